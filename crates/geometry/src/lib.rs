@@ -1,0 +1,17 @@
+//! Exact solids and meshes: what a scene is made of, and where lines cross it.
+//!
+//! A [`Solid`] has an inside: it is a tree of set operations over [`Primitive`]s. A [`Sheet`] has
+//! two sides and no inside. Both are immutable and cheap to clone, and valid by construction:
+//! every constructor refuses what it cannot represent with a [`ShapeError`].
+
+mod identity;
+pub mod mesh;
+mod primitive;
+mod sheet;
+mod solid;
+
+pub use identity::{FaceId, MaterialId, SurfaceId};
+pub use mesh::{CornerAttribute, MeshError, TriangleMesh};
+pub use primitive::{ConvexPolyhedron, Primitive, ShapeError};
+pub use sheet::Sheet;
+pub use solid::{Solid, SolidNode};

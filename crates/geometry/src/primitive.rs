@@ -1,0 +1,188 @@
+//! The closed set of primitive solids, each in its own frame.
+
+use std::sync::Arc;
+
+use octray_math::{Aabb, DVec3};
+use thiserror::Error;
+
+use crate::mesh::{MeshError, TriangleMesh};
+
+/// Why a shape cannot be made.
+#[derive(Clone, Debug, PartialEq, Error)]
+pub enum ShapeError {
+    /// A length, radius or coordinate is NaN or infinite.
+    #[error("{what} must be finite, not {value}")]
+    NotFinite {
+        /// The parameter.
+        what: &'static str,
+        /// What was given.
+        value: f64,
+    },
+    /// A length or radius that must be positive is not.
+    #[error("{what} must be greater than 0, not {value}")]
+    NotPositive {
+        /// The parameter.
+        what: &'static str,
+        /// What was given.
+        value: f64,
+    },
+    /// A direction or normal has no length.
+    #[error("{what} must not be the zero vector")]
+    ZeroVector {
+        /// The parameter.
+        what: &'static str,
+    },
+    /// A transform flattens space or is not finite.
+    #[error("the transform is singular: it has no inverse")]
+    SingularTransform,
+    /// The faces of a convex polyhedron enclose no bounded, full-dimensional region.
+    #[error("the polyhedron is {0}")]
+    BadPolyhedron(&'static str),
+    /// The mesh cannot be used as a solid.
+    #[error(transparent)]
+    Mesh(#[from] MeshError),
+}
+
+/// A solid in its own frame, of the shapes that octray knows exactly.
+#[derive(Clone, Debug)]
+pub enum Primitive {
+    /// All points within `radius` of the origin.
+    Sphere {
+        /// Positive.
+        radius: f64,
+    },
+    /// The axis-aligned box between two corners.
+    Box {
+        /// Lowest corner.
+        min: DVec3,
+        /// Highest corner, above `min` on every axis.
+        max: DVec3,
+    },
+    /// A circular cylinder about the z axis, capped at `z[0] < z[1]`.
+    Cylinder {
+        /// Positive.
+        radius: f64,
+        /// Bottom and top; infinite ends leave the cylinder uncapped there.
+        z: [f64; 2],
+    },
+    /// A cone or frustum about the z axis: `radius[0]` at `z[0]`, `radius[1]` at `z[1]`, capped.
+    Cone {
+        /// Not negative, not equal (that would be a cylinder).
+        radius: [f64; 2],
+        /// Bottom and top, finite.
+        z: [f64; 2],
+    },
+    /// A torus about the z axis; `minor > major` gives the spindle's outer shape.
+    Torus {
+        /// Distance of the tube's centre from the axis, positive.
+        major: f64,
+        /// Radius of the tube, positive.
+        minor: f64,
+    },
+    /// The points with `normal . x <= offset`; `normal` has unit length.
+    HalfSpace {
+        /// Points out of the solid; unit length.
+        normal: DVec3,
+        /// Distance of the boundary from the origin along `normal`.
+        offset: f64,
+    },
+    /// A bounded intersection of half-spaces.
+    Convex(Arc<ConvexPolyhedron>),
+    /// The inside of a closed, consistently oriented mesh.
+    Mesh(Arc<TriangleMesh>),
+}
+
+/// A bounded intersection of half-spaces, with its corners.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ConvexPolyhedron {
+    /// `(unit outward normal n, d)`: inside is `n . x <= d`. One per face.
+    pub planes: Vec<(DVec3, f64)>,
+    /// The corners.
+    pub vertices: Vec<DVec3>,
+}
+
+impl ConvexPolyhedron {
+    /// From corners and faces (corner indices in order round the face, either orientation).
+    ///
+    /// # Errors
+    /// Fewer than 4 faces, an index out of range, a degenerate or non-planar face, or a corner
+    /// that lies outside a face's plane (then the polyhedron is not convex) by more than 1e-9 of
+    /// its size. Callers fall back to a mesh.
+    pub fn from_faces(vertices: Vec<DVec3>, faces: &[Vec<u32>]) -> Result<Self, ShapeError> {
+        let bounds = Aabb::from_points(vertices.iter().copied());
+        if !bounds.is_bounded() || vertices.iter().any(|v| !v.is_finite()) {
+            return Err(ShapeError::BadPolyhedron("not finite"));
+        }
+        if faces.len() < 4 {
+            return Err(ShapeError::BadPolyhedron("open: it has fewer than 4 faces"));
+        }
+        let tolerance = bounds.diagonal() * 1e-9;
+        let center = vertices.iter().sum::<DVec3>() / vertices.len() as f64;
+        let mut planes = Vec::with_capacity(faces.len());
+        for face in faces {
+            let corner = |&i: &u32| vertices.get(i as usize).copied();
+            let corners: Option<Vec<DVec3>> = face.iter().map(corner).collect();
+            let corners =
+                corners.ok_or(ShapeError::BadPolyhedron("using a corner it does not have"))?;
+            // Newell's normal: right for any polygon, exact for axis-aligned ones.
+            let mut normal = DVec3::ZERO;
+            for (a, b) in corners.iter().zip(corners.iter().cycle().skip(1)) {
+                normal += (*a - center).cross(*b - center);
+            }
+            let Some(mut normal) = normal.try_normalize() else {
+                return Err(ShapeError::BadPolyhedron("degenerate: a face has no area"));
+            };
+            let mut offset = normal.dot(corners[0]);
+            if normal.dot(center) > offset {
+                normal = -normal;
+                offset = -offset;
+            }
+            if corners
+                .iter()
+                .any(|c| (normal.dot(*c) - offset).abs() > tolerance)
+            {
+                return Err(ShapeError::BadPolyhedron("not planar in one of its faces"));
+            }
+            if vertices.iter().any(|v| normal.dot(*v) - offset > tolerance) {
+                return Err(ShapeError::BadPolyhedron("not convex"));
+            }
+            if normal.dot(center) > offset - tolerance {
+                return Err(ShapeError::BadPolyhedron("flat"));
+            }
+            planes.push((normal, offset));
+        }
+        Ok(Self { planes, vertices })
+    }
+
+    /// The box around the corners.
+    #[must_use]
+    pub fn bounds(&self) -> Aabb {
+        Aabb::from_points(self.vertices.iter().copied())
+    }
+}
+
+impl Primitive {
+    /// The box around the solid in its own frame, unbounded for half-spaces.
+    #[must_use]
+    pub fn bounds(&self) -> Aabb {
+        match self {
+            Self::Sphere { radius } => Aabb::new(DVec3::splat(-radius), DVec3::splat(*radius)),
+            Self::Box { min, max } => Aabb::new(*min, *max),
+            Self::Cylinder { radius, z } => Aabb::new(
+                DVec3::new(-radius, -radius, z[0]),
+                DVec3::new(*radius, *radius, z[1]),
+            ),
+            Self::Cone { radius, z } => {
+                let r = radius[0].max(radius[1]);
+                Aabb::new(DVec3::new(-r, -r, z[0]), DVec3::new(r, r, z[1]))
+            }
+            Self::Torus { major, minor } => {
+                let r = major + minor;
+                Aabb::new(DVec3::new(-r, -r, -minor), DVec3::new(r, r, *minor))
+            }
+            Self::HalfSpace { .. } => Aabb::ALL,
+            Self::Convex(polyhedron) => polyhedron.bounds(),
+            Self::Mesh(mesh) => mesh.bounds(),
+        }
+    }
+}

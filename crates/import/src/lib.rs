@@ -1,0 +1,46 @@
+//! Scene and mesh files into [`Scene`]s, with diagnostics that name file, line and column.
+//!
+//! Every importer is a function from bytes to what it could read plus everything that was wrong,
+//! all in one go. None panics, hangs, or allocates more than a multiple of its input: sizes that
+//! a file claims are checked against [`Options::memory_budget`] first. Only [`Disk`] touches the file system.
+
+pub mod diagnostic;
+mod files;
+pub mod nff;
+pub mod obj;
+pub mod openscad;
+pub mod ply;
+pub mod pov;
+pub mod stl;
+
+pub use diagnostic::{Diagnostic, Diagnostics, Severity, SourceId, Span};
+pub use files::{Disk, FileSystem, InMemory};
+
+use octray_scene::Scene;
+
+/// How to read.
+#[derive(Clone, Debug)]
+pub struct Options {
+    /// OpenSCAD: make the polyhedra OpenSCAD makes even where `$fn` is 0.
+    pub facets: bool,
+    /// At most this many bytes of scene data (positions, nodes, expanded loops) are made.
+    pub memory_budget: u64,
+}
+
+impl Default for Options {
+    fn default() -> Self {
+        Self {
+            facets: false,
+            memory_budget: 8 << 30,
+        }
+    }
+}
+
+/// What an importer returns.
+#[derive(Debug)]
+pub struct Imported {
+    /// The scene; `None` when an error makes a picture meaningless.
+    pub scene: Option<Scene>,
+    /// Everything worth saying, in source order.
+    pub diagnostics: Diagnostics,
+}
