@@ -9,6 +9,7 @@ pub mod mesh;
 mod primitive;
 mod sheet;
 mod solid;
+pub mod surface;
 
 pub use identity::{FaceId, MaterialId, SurfaceId};
 pub use mesh::{CornerAttribute, MeshError, TriangleMesh};
