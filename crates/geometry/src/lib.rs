@@ -4,6 +4,7 @@
 //! two sides and no inside. Both are immutable and cheap to clone, and valid by construction:
 //! every constructor refuses what it cannot represent with a [`ShapeError`].
 
+pub mod csg;
 mod identity;
 pub mod mesh;
 mod primitive;
@@ -15,4 +16,4 @@ pub use identity::{FaceId, MaterialId, SurfaceId};
 pub use mesh::{CornerAttribute, MeshError, TriangleMesh};
 pub use primitive::{ConvexPolyhedron, Primitive, ShapeError};
 pub use sheet::Sheet;
-pub use solid::{Solid, SolidNode};
+pub use solid::{MAX_NESTING, MAX_OPERANDS, Solid, SolidNode};

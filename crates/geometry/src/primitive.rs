@@ -38,6 +38,12 @@ pub enum ShapeError {
     /// The faces of a convex polyhedron enclose no bounded, full-dimensional region.
     #[error("the polyhedron is {0}")]
     BadPolyhedron(&'static str),
+    /// The tree of operations is too deep.
+    #[error("the solid has {0} nested operations; at most {max} are supported", max = crate::solid::MAX_NESTING)]
+    TooDeep(u32),
+    /// The tree has too many primitives.
+    #[error("the solid has {0} operands; at most {max} are supported", max = crate::solid::MAX_OPERANDS)]
+    TooManyOperands(u64),
     /// The mesh cannot be used as a solid.
     #[error(transparent)]
     Mesh(#[from] MeshError),

@@ -13,7 +13,17 @@ use crate::primitive::{ConvexPolyhedron, Primitive, ShapeError};
 /// Every method returns a new solid. Boundaries belong to no operand in particular: operations
 /// are regularised, so a difference with a coincident face leaves no skin.
 #[derive(Clone, Debug)]
-pub struct Solid(Arc<SolidNode>);
+pub struct Solid(Arc<Measured>);
+
+/// A node with what decides whether the tree can be worked on at all.
+#[derive(Debug)]
+struct Measured {
+    node: SolidNode,
+    /// Nodes on the longest way down.
+    depth: u32,
+    /// Primitives, those of shared subtrees counted at every use.
+    operands: u64,
+}
 
 /// One node of a [`Solid`].
 #[derive(Clone, Debug)]
@@ -62,17 +72,107 @@ fn positive(what: &'static str, value: f64) -> Result<f64, ShapeError> {
     }
 }
 
-impl From<SolidNode> for Solid {
-    fn from(node: SolidNode) -> Self {
-        Self(Arc::new(node))
+impl SolidNode {
+    fn children(&self) -> &[Solid] {
+        match self {
+            Self::Empty | Self::Primitive(_) => &[],
+            Self::Transformed { child, .. }
+            | Self::WithMaterial { child, .. }
+            | Self::Complement(child) => std::slice::from_ref(child),
+            Self::Union(all) | Self::Intersection(all) | Self::Difference(all) => all,
+        }
     }
 }
+
+impl From<SolidNode> for Solid {
+    fn from(node: SolidNode) -> Self {
+        let below = node.children().iter();
+        let depth = 1 + below.clone().map(|s| s.0.depth).max().unwrap_or(0);
+        let own = u64::from(matches!(node, SolidNode::Primitive(_)));
+        let operands = below.fold(own, |sum, s| sum.saturating_add(s.0.operands));
+        Self(Arc::new(Measured {
+            node,
+            depth,
+            operands,
+        }))
+    }
+}
+
+impl Drop for Measured {
+    /// Takes a deep tree apart in a loop: the compiler's own way recurses.
+    fn drop(&mut self) {
+        if self.depth < 64 {
+            return;
+        }
+        let mut stack = vec![std::mem::replace(&mut self.node, SolidNode::Empty)];
+        while let Some(mut node) = stack.pop() {
+            let children = match &mut node {
+                SolidNode::Union(all)
+                | SolidNode::Intersection(all)
+                | SolidNode::Difference(all) => std::mem::take(all),
+                SolidNode::Transformed { child, .. }
+                | SolidNode::WithMaterial { child, .. }
+                | SolidNode::Complement(child) => vec![std::mem::replace(child, Solid::empty())],
+                SolidNode::Empty | SolidNode::Primitive(_) => Vec::new(),
+            };
+            for mut child in children {
+                if let Some(last_owner) = Arc::get_mut(&mut child.0) {
+                    stack.push(std::mem::replace(&mut last_owner.node, SolidNode::Empty));
+                    last_owner.depth = 0;
+                }
+            }
+        }
+    }
+}
+
+/// The deepest tree of solids that is worked on.
+pub const MAX_NESTING: u32 = 1000;
+/// The most operands a solid may have, shared subtrees counted at every use.
+pub const MAX_OPERANDS: u64 = 1 << 26;
 
 impl Solid {
     /// The top node.
     #[must_use]
     pub fn node(&self) -> &SolidNode {
-        &self.0
+        &self.0.node
+    }
+
+    /// How many primitives it has, those of shared subtrees counted at every use.
+    #[must_use]
+    pub fn operands(&self) -> u64 {
+        self.0.operands
+    }
+
+    /// Checks that the tree is not too deep or too large to be worked on.
+    ///
+    /// Bounds and lowering recurse; scenes check this before they accept a solid.
+    ///
+    /// # Errors
+    /// [`ShapeError::TooDeep`] or [`ShapeError::TooManyOperands`].
+    pub fn check_size(&self) -> Result<(), ShapeError> {
+        if self.0.depth > MAX_NESTING {
+            return Err(ShapeError::TooDeep(self.0.depth));
+        }
+        if self.0.operands > MAX_OPERANDS {
+            return Err(ShapeError::TooManyOperands(self.0.operands));
+        }
+        Ok(())
+    }
+
+    /// `operands` with those that are themselves nodes of the same kind replaced by theirs, so
+    /// that `a + b + c + ...` is one flat node.
+    fn spliced(
+        operands: impl IntoIterator<Item = Self>,
+        same: impl Fn(usize, &SolidNode) -> Option<&[Self]>,
+    ) -> Vec<Self> {
+        let mut flat = Vec::new();
+        for (index, operand) in operands.into_iter().enumerate() {
+            match same(index, operand.node()) {
+                Some(inner) => flat.extend_from_slice(inner),
+                None => flat.push(operand),
+            }
+        }
+        flat
     }
 
     fn primitive(primitive: Primitive) -> Self {
@@ -200,7 +300,10 @@ impl Solid {
     /// Points in any of the operands; of none, the empty solid.
     #[must_use]
     pub fn union(operands: impl IntoIterator<Item = Self>) -> Self {
-        let mut operands: Vec<Self> = operands.into_iter().collect();
+        let mut operands = Self::spliced(operands, |_, node| match node {
+            SolidNode::Union(all) => Some(all),
+            _ => None,
+        });
         match operands.len() {
             0 => Self::empty(),
             1 => operands.swap_remove(0),
@@ -211,7 +314,10 @@ impl Solid {
     /// Points in all operands; of none, the empty solid (as in OpenSCAD and POV-Ray).
     #[must_use]
     pub fn intersection(operands: impl IntoIterator<Item = Self>) -> Self {
-        let mut operands: Vec<Self> = operands.into_iter().collect();
+        let mut operands = Self::spliced(operands, |_, node| match node {
+            SolidNode::Intersection(all) => Some(all),
+            _ => None,
+        });
         match operands.len() {
             0 => Self::empty(),
             1 => operands.swap_remove(0),
@@ -222,7 +328,10 @@ impl Solid {
     /// Points in the first operand and in none of the others; of none, the empty solid.
     #[must_use]
     pub fn difference(operands: impl IntoIterator<Item = Self>) -> Self {
-        let mut operands: Vec<Self> = operands.into_iter().collect();
+        let mut operands = Self::spliced(operands, |index, node| match node {
+            SolidNode::Difference(all) if index == 0 => Some(all),
+            _ => None,
+        });
         match operands.len() {
             0 => Self::empty(),
             1 => operands.swap_remove(0),
@@ -320,5 +429,37 @@ impl Solid {
                 .map_or(Aabb::EMPTY, |first| first.bounds_in(world_from_here)),
             SolidNode::Complement(_) => Aabb::ALL,
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn chains_of_operations_stay_flat() {
+        let ball = Solid::sphere(1.0).expect("valid");
+        let sum = (0..5000).fold(Solid::empty(), |sum, _| Solid::union([sum, ball.clone()]));
+        assert!(sum.check_size().is_ok());
+        assert_eq!(sum.operands(), 5000);
+    }
+
+    #[test]
+    fn deep_and_exponential_trees_are_refused_and_dropped_without_recursion() {
+        let ball = Solid::sphere(1.0).expect("valid");
+        let mut deep = ball.clone();
+        for _ in 0..200_000 {
+            deep = deep.complement();
+        }
+        assert!(matches!(deep.check_size(), Err(ShapeError::TooDeep(_))));
+        let mut wide = ball;
+        for _ in 0..60 {
+            let moved = wide.translate(DVec3::X).expect("finite");
+            wide = Solid::intersection([wide.complement(), moved]);
+        }
+        assert!(matches!(
+            wide.check_size(),
+            Err(ShapeError::TooManyOperands(_))
+        ));
     }
 }

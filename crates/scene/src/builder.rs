@@ -1,4 +1,4 @@
-use octray_geometry::{MaterialId, Sheet, Solid, SolidNode};
+use octray_geometry::{MaterialId, ShapeError, Sheet, Solid, SolidNode};
 use octray_math::{Aabb, DVec3};
 use thiserror::Error;
 
@@ -81,6 +81,14 @@ pub enum SceneError {
     /// A camera's axes do not span space.
     #[error("the camera's forward, right and up vectors lie in one plane")]
     FlatCamera,
+    /// An object's solid is too large to be worked on.
+    #[error("object `{object}`: {error}")]
+    BadSolid {
+        /// Name of the object.
+        object: String,
+        /// What is wrong.
+        error: ShapeError,
+    },
     /// More objects than ids.
     #[error("the scene has {0} objects; at most 2^30 are supported")]
     TooManyObjects(usize),
@@ -228,7 +236,13 @@ impl SceneBuilder {
             errors.push(SceneError::TooManyObjects(scene.objects.len()));
         }
         for object in &scene.objects {
-            check_materials(object, scene.materials.len(), &mut errors);
+            // The other checks walk the tree.
+            if let Err(error) = check_size(&object.shape) {
+                let object = object.name.clone();
+                errors.push(SceneError::BadSolid { object, error });
+            } else {
+                check_materials(object, scene.materials.len(), &mut errors);
+            }
         }
         for material in &scene.materials {
             check_material(material, &mut errors);
@@ -244,6 +258,17 @@ impl SceneBuilder {
         } else {
             Err(errors)
         }
+    }
+}
+
+fn check_size(shape: &Shape) -> Result<(), ShapeError> {
+    match shape {
+        Shape::Solid(solid) => solid.check_size(),
+        Shape::Sheet(Sheet::Shell { solid, clip }) => {
+            solid.check_size()?;
+            clip.check_size()
+        }
+        Shape::Sheet(Sheet::Mesh { .. }) => Ok(()),
     }
 }
 

@@ -10,6 +10,7 @@ mod table;
 
 use octray_math::{DAffine3, DVec3};
 
+pub(crate) use table::points_upward;
 pub use table::{SURFACE_TOLERANCE, SurfaceTable};
 
 /// A surface in world coordinates.

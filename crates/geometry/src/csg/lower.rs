@@ -1,0 +1,420 @@
+//! From a user's tree of solids to an expression over faces.
+
+use std::sync::Arc;
+
+use octray_math::{DAffine3, DVec3};
+
+use super::code::{Code, Constant, Operation, Writer};
+use crate::surface::{Quadric, Surface, SurfaceTable, points_upward};
+use crate::{FaceId, MaterialId, Primitive, Solid, SolidNode, SurfaceId, TriangleMesh};
+
+/// One face of one operand: the literal of the expressions.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Face {
+    /// The surface it lies on.
+    pub surface: SurfaceId,
+    /// Whether the expression wants the surface's positive side (complements do, and planes whose
+    /// canonical normal points inwards).
+    pub inside_is_positive: bool,
+    /// Its own material, where it has one.
+    pub material: Option<MaterialId>,
+}
+
+/// A closed mesh that is an operand: its surface id comes after those of the table.
+#[derive(Clone, Debug)]
+pub struct MeshOperand {
+    /// The mesh in its own frame.
+    pub mesh: Arc<TriangleMesh>,
+    /// Where it is.
+    pub world_from_mesh: DAffine3,
+}
+
+/// An expression, or what it always is.
+pub type Lowered = Result<Code, Constant>;
+
+/// Lowers the solids of one world, numbering faces and surfaces in the order it meets them.
+#[derive(Debug)]
+pub struct Lowering {
+    table: SurfaceTable,
+    faces: Vec<Face>,
+    meshes: Vec<MeshOperand>,
+}
+
+/// Surfaces of meshes are numbered downwards from here until the table's size is known.
+const FIRST_MESH: u32 = u32::MAX;
+
+/// Where one is in the tree.
+#[derive(Clone, Copy)]
+struct Context {
+    world_from_here: DAffine3,
+    complemented: bool,
+    material: Option<MaterialId>,
+}
+
+impl Lowering {
+    /// For a scene of this size (largest coordinate; positive and finite).
+    #[must_use]
+    pub fn new(scene_size: f64) -> Self {
+        Self {
+            table: SurfaceTable::new(scene_size),
+            faces: Vec::new(),
+            meshes: Vec::new(),
+        }
+    }
+
+    /// The expression of a solid in world coordinates.
+    ///
+    /// The solid's size must have been checked ([`Solid::check_size`]): this recurses.
+    pub fn lower(&mut self, solid: &Solid) -> Lowered {
+        let mut writer = Writer::default();
+        let context = Context {
+            world_from_here: DAffine3::IDENTITY,
+            complemented: false,
+            material: None,
+        };
+        match self.visit(solid, &context, &mut writer) {
+            Some(constant) => Err(constant),
+            None => Ok(writer.finish()),
+        }
+    }
+
+    /// Faces, surfaces and mesh operands; the surface of mesh operand `i` is `surfaces.len() + i`.
+    #[must_use]
+    pub fn finish(self) -> (Vec<Face>, Vec<Surface>, Vec<MeshOperand>) {
+        let surfaces = self.table.into_surfaces();
+        let mut faces = self.faces;
+        for face in &mut faces {
+            let from_last = FIRST_MESH - face.surface.0;
+            if (from_last as usize) < self.meshes.len() {
+                face.surface = SurfaceId(surfaces.len() as u32 + from_last);
+            }
+        }
+        (faces, surfaces, self.meshes)
+    }
+
+    /// How many faces share a surface that another face brought.
+    #[must_use]
+    pub const fn merged_surfaces(&self) -> usize {
+        self.table.merged()
+    }
+
+    fn visit(&mut self, solid: &Solid, context: &Context, writer: &mut Writer) -> Option<Constant> {
+        let of = |b: bool| Some(if b { Constant::True } else { Constant::False });
+        match solid.node() {
+            SolidNode::Empty => of(context.complemented),
+            SolidNode::Primitive(primitive) => {
+                self.primitive(primitive, context, writer);
+                None
+            }
+            SolidNode::Transformed {
+                child,
+                parent_from_child,
+            } => {
+                let world_from_here = context.world_from_here * *parent_from_child;
+                self.visit(
+                    child,
+                    &Context {
+                        world_from_here,
+                        ..*context
+                    },
+                    writer,
+                )
+            }
+            SolidNode::WithMaterial { child, material } => {
+                let material = Some(*material);
+                self.visit(
+                    child,
+                    &Context {
+                        material,
+                        ..*context
+                    },
+                    writer,
+                )
+            }
+            SolidNode::Complement(child) => {
+                let complemented = !context.complemented;
+                self.visit(
+                    child,
+                    &Context {
+                        complemented,
+                        ..*context
+                    },
+                    writer,
+                )
+            }
+            SolidNode::Union(all) => self.operation(all, 0, Operation::Or, context, writer),
+            SolidNode::Intersection(all) => self.operation(all, 0, Operation::And, context, writer),
+            SolidNode::Difference(all) => self.operation(all, 1, Operation::And, context, writer),
+        }
+    }
+
+    /// `operation` over `solids`, those from `complement_from` on complemented (0: none are).
+    fn operation(
+        &mut self,
+        solids: &[Solid],
+        complement_from: usize,
+        operation: Operation,
+        context: &Context,
+        writer: &mut Writer,
+    ) -> Option<Constant> {
+        let operation = match (operation, context.complemented) {
+            (Operation::And, true) => Operation::Or,
+            (Operation::Or, true) => Operation::And,
+            (operation, false) => operation,
+        };
+        let mut open = writer.open(operation);
+        for (index, solid) in solids.iter().enumerate() {
+            let turned = complement_from > 0 && index >= complement_from;
+            let complemented = context.complemented ^ turned;
+            let start = writer.position();
+            let constant = self.visit(
+                solid,
+                &Context {
+                    complemented,
+                    ..*context
+                },
+                writer,
+            );
+            if writer.operand(&mut open, start, constant) {
+                return Some(match operation {
+                    Operation::And => Constant::False,
+                    Operation::Or => Constant::True,
+                });
+            }
+        }
+        writer.close(&open)
+    }
+
+    fn primitive(&mut self, primitive: &Primitive, context: &Context, writer: &mut Writer) {
+        let sides = self.sides(primitive, &context.world_from_here);
+        let operation = if context.complemented {
+            Operation::Or
+        } else {
+            Operation::And
+        };
+        let mut open = writer.open(operation);
+        for (surface, inside_is_positive) in sides {
+            let face = FaceId(self.faces.len() as u32);
+            self.faces.push(Face {
+                surface,
+                inside_is_positive: inside_is_positive ^ context.complemented,
+                material: context.material,
+            });
+            let start = writer.position();
+            writer.literal(face);
+            writer.operand(&mut open, start, None);
+        }
+        writer.close(&open);
+    }
+
+    /// The surfaces of a primitive, each with whether the inside is on its positive side.
+    fn sides(&mut self, primitive: &Primitive, world: &DAffine3) -> Vec<(SurfaceId, bool)> {
+        match primitive {
+            Primitive::Sphere { radius } => {
+                let frame = *world * DAffine3::from_scale(DVec3::splat(*radius));
+                vec![self.quadric(Quadric::Sphere, &frame)]
+            }
+            Primitive::Box { min, max } => [DVec3::X, DVec3::Y, DVec3::Z]
+                .into_iter()
+                .flat_map(|axis| [(axis, *max), (-axis, *min)])
+                .map(|(normal, corner)| self.plane(world, normal, corner))
+                .collect(),
+            Primitive::Cylinder { radius, z } => {
+                let frame = *world * DAffine3::from_scale(DVec3::new(*radius, *radius, 1.0));
+                let mut sides = vec![self.quadric(Quadric::Cylinder, &frame)];
+                sides.extend(self.caps(world, *z));
+                sides
+            }
+            Primitive::Cone { radius, z } => {
+                // The radius falls linearly to 0 at the apex; in the frame it equals |z|.
+                let slope = (radius[1] - radius[0]) / (z[1] - z[0]);
+                let apex = z[0] - radius[0] / slope;
+                let frame = *world
+                    * DAffine3::from_translation(DVec3::new(0.0, 0.0, apex))
+                    * DAffine3::from_scale(DVec3::new(slope.abs(), slope.abs(), 1.0));
+                let mut sides = vec![self.quadric(Quadric::Cone, &frame)];
+                sides.extend(self.caps(world, *z));
+                sides
+            }
+            Primitive::Torus { major, minor } => {
+                let frame = *world * DAffine3::from_scale(DVec3::splat(*major));
+                let local_from_world = frame.inverse();
+                let minor = minor / major;
+                vec![(
+                    self.table.insert(Surface::Torus {
+                        minor,
+                        local_from_world,
+                    }),
+                    false,
+                )]
+            }
+            Primitive::HalfSpace { normal, offset } => {
+                vec![self.plane(world, *normal, *normal * *offset)]
+            }
+            Primitive::Convex(polyhedron) => polyhedron
+                .planes
+                .iter()
+                .map(|(normal, offset)| self.plane(world, *normal, *normal * *offset))
+                .collect(),
+            Primitive::Mesh(mesh) => {
+                let surface = SurfaceId(FIRST_MESH - self.meshes.len() as u32);
+                self.meshes.push(MeshOperand {
+                    mesh: Arc::clone(mesh),
+                    world_from_mesh: *world,
+                });
+                vec![(surface, false)]
+            }
+        }
+    }
+
+    fn quadric(&mut self, kind: Quadric, world_from_local: &DAffine3) -> (SurfaceId, bool) {
+        let local_from_world = world_from_local.inverse();
+        (
+            self.table.insert(Surface::Quadric {
+                kind,
+                local_from_world,
+            }),
+            false,
+        )
+    }
+
+    fn caps(&mut self, world: &DAffine3, z: [f64; 2]) -> Vec<(SurfaceId, bool)> {
+        [(DVec3::Z, z[1]), (DVec3::NEG_Z, z[0])]
+            .into_iter()
+            .filter(|(_, height)| height.is_finite())
+            .map(|(normal, height)| self.plane(world, normal, DVec3::new(0.0, 0.0, height)))
+            .collect()
+    }
+
+    /// The plane through `point` whose outward normal is `normal`, both in the local frame.
+    fn plane(&mut self, world: &DAffine3, normal: DVec3, point: DVec3) -> (SurfaceId, bool) {
+        // Normals go by the cofactor matrix, which keeps axis-aligned ones exact; its sign is the
+        // determinant's, so a mirrored frame still points outwards.
+        let m = world.matrix3;
+        let cofactor = m.y_axis.cross(m.z_axis) * normal.x
+            + m.z_axis.cross(m.x_axis) * normal.y
+            + m.x_axis.cross(m.y_axis) * normal.z;
+        let handed = if m.determinant() < 0.0 {
+            -cofactor
+        } else {
+            cofactor
+        };
+        let outward = (handed / handed.abs().max_element()).normalize();
+        let offset = outward.dot(world.transform_point3(point));
+        let upward = points_upward(outward);
+        let surface = if upward {
+            Surface::Plane {
+                normal: outward,
+                offset,
+            }
+        } else {
+            Surface::Plane {
+                normal: -outward,
+                offset: -offset,
+            }
+        };
+        (self.table.insert(surface), !upward)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::csg::{evaluate, faces};
+
+    fn value(surface: &Surface, p: DVec3) -> f64 {
+        match surface {
+            Surface::Plane { normal, offset } => normal.dot(p) - offset,
+            Surface::Quadric {
+                kind,
+                local_from_world,
+            } => {
+                let q = local_from_world.transform_point3(p);
+                match kind {
+                    Quadric::Sphere => q.length_squared() - 1.0,
+                    Quadric::Cylinder => q.x * q.x + q.y * q.y - 1.0,
+                    Quadric::Cone => q.x * q.x + q.y * q.y - q.z * q.z,
+                }
+            }
+            Surface::Torus {
+                minor,
+                local_from_world,
+            } => {
+                let q = local_from_world.transform_point3(p);
+                libm::hypot(libm::hypot(q.x, q.y) - 1.0, q.z) - minor
+            }
+        }
+    }
+
+    fn contains(solid: &Solid, p: DVec3) -> bool {
+        let mut lowering = Lowering::new(10.0);
+        let lowered = lowering.lower(solid);
+        let (faces, surfaces, _) = lowering.finish();
+        match lowered {
+            Err(constant) => constant == Constant::True,
+            Ok(code) => evaluate(code.words(), &|id: FaceId| {
+                let face = faces[id.0 as usize];
+                (value(&surfaces[face.surface.0 as usize], p) > 0.0) == face.inside_is_positive
+            }),
+        }
+    }
+
+    #[test]
+    fn primitives_contain_what_their_definitions_say() {
+        let at = DVec3::new;
+        let cone = Solid::cone(2.0, 1.0, 0.0, 2.0).expect("valid");
+        assert!(contains(&cone, at(1.4, 0.0, 1.0)) && !contains(&cone, at(1.6, 0.0, 1.0)));
+        assert!(!contains(&cone, at(0.0, 0.0, 2.1)) && !contains(&cone, at(0.0, 0.0, 5.0)));
+        let tip = Solid::cone(0.0, 1.0, 0.0, 1.0).expect("valid");
+        assert!(contains(&tip, at(0.0, 0.4, 0.5)) && !contains(&tip, at(0.0, 0.6, 0.5)));
+        let torus = Solid::torus(3.0, 1.0).expect("valid");
+        assert!(contains(&torus, at(0.0, 3.5, 0.5)) && !contains(&torus, at(0.0, 1.0, 0.0)));
+        let half = Solid::half_space(at(-1.0, -1.0, 0.0), 1.0).expect("valid");
+        assert!(contains(&half, at(0.0, -1.4, 0.0)) && !contains(&half, at(-1.0, -1.4, 0.0)));
+    }
+
+    #[test]
+    fn mirrored_and_sheared_frames_keep_the_inside_inside() {
+        let cuboid = Solid::cuboid(DVec3::ZERO, DVec3::new(1.0, 2.0, 3.0)).expect("valid");
+        let shear = DAffine3::from_cols(
+            DVec3::new(-1.0, 0.0, 0.0),
+            DVec3::new(0.5, 1.0, 0.0),
+            DVec3::new(0.0, 0.3, 1.0),
+            DVec3::new(4.0, 0.0, 0.0),
+        );
+        let moved = cuboid.transform(shear).expect("invertible");
+        for i in 0..4_i32 {
+            for j in 0..4_i32 {
+                let local = DVec3::new(f64::from(i) * 0.4 - 0.3, f64::from(j) * 0.7 - 0.2, 1.0);
+                let world = shear.transform_point3(local);
+                assert_eq!(contains(&cuboid, local), contains(&moved, world), "{local}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_cutter_that_ends_in_the_face_it_cuts_shares_its_plane() {
+        let plate = Solid::cuboid(DVec3::ZERO, DVec3::splat(10.0)).expect("valid");
+        let drill = Solid::cylinder(2.0, 0.0, 10.0).expect("valid");
+        let mut lowering = Lowering::new(10.0);
+        let code = lowering
+            .lower(&Solid::difference([plate, drill]))
+            .expect("not constant");
+        assert_eq!(faces(code.words()).count(), 9);
+        assert_eq!(lowering.merged_surfaces(), 2);
+        let (_, surfaces, _) = lowering.finish();
+        assert_eq!(surfaces.len(), 7);
+    }
+
+    #[test]
+    fn the_empty_solid_disappears_from_every_operation() {
+        let ball = Solid::sphere(1.0).expect("valid");
+        let mut lowering = Lowering::new(1.0);
+        let with_empty = Solid::union([ball.clone(), Solid::empty()]);
+        assert_eq!(lowering.lower(&with_empty).expect("a ball").literals(), 1);
+        let nothing = Solid::intersection([ball.clone(), Solid::empty()]);
+        assert_eq!(lowering.lower(&nothing), Err(Constant::False));
+        let everything = Solid::difference([Solid::empty(), ball]).complement();
+        assert_eq!(lowering.lower(&everything), Err(Constant::True));
+    }
+}

@@ -1,0 +1,13 @@
+//! Set operations as boolean expressions over sides of surfaces.
+//!
+//! A box is not an operand here but the conjunction of six sides; a difference is a conjunction
+//! with complements; after De Morgan nothing is left but *and*, *or* and [`Face`]s. That is what
+//! lets an octree cell forget every *face* that does not matter in it, not only every operand, and
+//! what makes coincident faces one variable: at a parameter where some surfaces are crossed, all
+//! of them change at once, and there is a boundary only where the expression changes.
+
+mod code;
+mod lower;
+
+pub use code::{Code, Constant, changed_face, evaluate, faces, truth_on};
+pub use lower::{Face, Lowered, Lowering, MeshOperand};
