@@ -1,1 +1,8 @@
-//! tree
+//! Octrees that do not know what they hold.
+//!
+//! [`CellTree`] is a partition of a cube into cells: empty, occupied or divided. What a cell
+//! contains is the business of a [`Subdivide`]; the tree only decides where to divide, and walks.
+
+pub mod cell_tree;
+
+pub use cell_tree::{Cell, CellTree, CellTreeStats, Criteria, Node, Subdivide};

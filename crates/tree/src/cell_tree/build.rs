@@ -1,0 +1,194 @@
+//! Building level by level: the cells of a level are worked on in parallel and put down in Morton
+//! order, so limits act at the same place whatever the number of threads.
+
+use octray_math::{Aabb, CellKey, MAX_DEPTH};
+use rayon::prelude::*;
+
+use super::{Cell, CellTree, CellTreeStats, Node};
+
+/// Says what cells contain.
+pub trait Subdivide: Sync {
+    /// The contents of one cell while the tree is built.
+    type Content: Send + Sync;
+
+    /// The part of a parent's contents that matters in `cell`.
+    ///
+    /// `cell` is a little larger than the cell itself, see [`CellTree::CONTENT_MARGIN`].
+    fn restrict(&self, parent: &Self::Content, cell: &Aabb) -> Self::Content;
+
+    /// What the cell is.
+    fn describe(&self, content: &Self::Content) -> Cell;
+
+    /// The memory that the contents will take in the finished tree.
+    fn bytes(&self, content: &Self::Content) -> u64;
+}
+
+/// When to divide.
+///
+/// A cell is divided when the expected cost of a ray that meets it falls: a ray that meets a cube
+/// meets each of its octants with probability 1/4 (the ratio of surface areas, MacDonald & Booth
+/// 1990). A costly cell may be divided a few times without gain, because many faces through one
+/// octant need more than one division to come apart.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Criteria {
+    /// No cell lies deeper; at most 21.
+    pub max_depth: u32,
+    /// Division stops before nodes and contents take more bytes.
+    pub memory_limit: u64,
+    /// Cost of entering a cell, in units of one plane intersected with a line.
+    pub visit_cost: f64,
+}
+
+impl Default for Criteria {
+    fn default() -> Self {
+        Self {
+            max_depth: 16,
+            memory_limit: 4 << 30,
+            visit_cost: 1.5,
+        }
+    }
+}
+
+/// How often in a row a cell may be divided without gain, and how costly it must be.
+const FUTILE_LIMIT: u8 = 3;
+const FUTILE_COST: f64 = 12.0;
+/// Passing an empty cell costs this share of entering an occupied one.
+const EMPTY_SHARE: f64 = 0.2;
+
+struct Frontier<C> {
+    key: CellKey,
+    content: C,
+    futile: u8,
+}
+
+impl CellTree {
+    /// Contents are decided for a cell grown by this share of the root's size on every side, and
+    /// rays are clipped to a cell grown by half of it: a crossing that rounding moved out of its
+    /// cell is still found, and found where the contents are right.
+    pub const CONTENT_MARGIN: f64 = 1.0 / (1u64 << 20) as f64;
+
+    /// The tree over the cube `root` and the contents of its occupied cells.
+    ///
+    /// Works inside the current thread pool; the result does not depend on it.
+    pub fn build<S: Subdivide>(
+        root: Aabb,
+        contents: S::Content,
+        subdivide: &S,
+        criteria: &Criteria,
+    ) -> (Self, Vec<S::Content>) {
+        let max_depth = criteria.max_depth.min(MAX_DEPTH);
+        let mut tree = Self {
+            root,
+            root_node: 0,
+            blocks: Vec::new(),
+            stats: CellTreeStats::default(),
+        };
+        let mut leaves = Vec::new();
+        let mut level = vec![Frontier {
+            key: CellKey::ROOT,
+            content: contents,
+            futile: 0,
+        }];
+        // Where the words of this level go: 8 per block of the level above, the root by itself.
+        let mut first_block = None;
+        loop {
+            let divided: Vec<Option<Vec<Frontier<S::Content>>>> = level
+                .par_iter()
+                .map(|cell| {
+                    (cell.key.depth < max_depth)
+                        .then(|| divide(cell, &root, subdivide, criteria))
+                        .flatten()
+                })
+                .collect();
+            let next_bytes: u64 = divided
+                .iter()
+                .flatten()
+                .map(|children| {
+                    32 + children
+                        .iter()
+                        .map(|c| subdivide.bytes(&c.content))
+                        .sum::<u64>()
+                })
+                .sum();
+            let stop = tree.stats.bytes + next_bytes > criteria.memory_limit;
+            tree.stats.stopped_by_memory |= stop;
+            let mut next = Vec::new();
+            let level_blocks = tree.blocks.len();
+            for (index, (cell, children)) in level.into_iter().zip(divided).enumerate() {
+                tree.stats.depth = tree.stats.depth.max(cell.key.depth);
+                let node = match (subdivide.describe(&cell.content), children) {
+                    (Cell::Empty(state), _) => {
+                        tree.stats.empty += 1;
+                        Node::Empty(state)
+                    }
+                    (Cell::Occupied { .. }, Some(children)) if !stop => {
+                        let block = tree.blocks.len() as u32;
+                        tree.blocks.push([0; 8]);
+                        tree.stats.bytes += 32;
+                        tree.stats.divided += 1;
+                        next.extend(children);
+                        Node::Divided(block)
+                    }
+                    (Cell::Occupied { .. }, _) => {
+                        tree.stats.occupied += 1;
+                        tree.stats.stopped_by_depth += u64::from(cell.key.depth == max_depth);
+                        tree.stats.bytes += subdivide.bytes(&cell.content);
+                        leaves.push(cell.content);
+                        Node::Occupied(leaves.len() as u32 - 1)
+                    }
+                };
+                match first_block {
+                    None => tree.root_node = node.encode(),
+                    Some(first) => {
+                        let block: usize = first;
+                        tree.blocks[block + index / 8][index % 8] = node.encode();
+                    }
+                }
+            }
+            if next.is_empty() {
+                return (tree, leaves);
+            }
+            first_block = Some(level_blocks);
+            level = next;
+        }
+    }
+}
+
+/// The eight children of an occupied cell, if dividing it pays.
+fn divide<S: Subdivide>(
+    cell: &Frontier<S::Content>,
+    root: &Aabb,
+    subdivide: &S,
+    criteria: &Criteria,
+) -> Option<Vec<Frontier<S::Content>>> {
+    let Cell::Occupied { cost } = subdivide.describe(&cell.content) else {
+        return None;
+    };
+    let margin = root.size().x * CellTree::CONTENT_MARGIN;
+    let mut expected = 0.5 * criteria.visit_cost;
+    let mut children = Vec::with_capacity(8);
+    for octant in 0..8 {
+        let key = cell.key.child(octant);
+        let content = subdivide.restrict(&cell.content, &key.bounds(root).inflated(margin));
+        expected += 0.25
+            * match subdivide.describe(&content) {
+                Cell::Empty(_) => EMPTY_SHARE * criteria.visit_cost,
+                Cell::Occupied { cost } => criteria.visit_cost + cost,
+            };
+        children.push(Frontier {
+            key,
+            content,
+            futile: 0,
+        });
+    }
+    if expected < criteria.visit_cost + cost {
+        return Some(children);
+    }
+    if cost > FUTILE_COST && cell.futile < FUTILE_LIMIT {
+        for child in &mut children {
+            child.futile = cell.futile + 1;
+        }
+        return Some(children);
+    }
+    None
+}

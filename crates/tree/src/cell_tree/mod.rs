@@ -1,0 +1,144 @@
+//! A cube divided into cubes, as a pointer tree.
+//!
+//! Blocks of eight nodes stand in one flat array, level by level and in Morton order within a
+//! level, so the same scene gives the same bytes whatever built it. A node is one word.
+
+mod build;
+#[cfg(test)]
+mod tests;
+mod walk;
+
+use octray_math::{Aabb, CellKey, DVec3};
+
+pub use build::{Criteria, Subdivide};
+
+/// What a cell is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Cell {
+    /// No boundary passes through; the number says what is there instead.
+    Empty(u32),
+    /// Something must be tested; `cost` is the expected work of doing so.
+    Occupied {
+        /// In units of one plane intersected with a line.
+        cost: f64,
+    },
+}
+
+/// One word of the tree.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Node {
+    /// An empty cell with its state.
+    Empty(u32),
+    /// An occupied cell: the index of its contents.
+    Occupied(u32),
+    /// The index of a block of eight children.
+    Divided(u32),
+}
+
+const TAG_BITS: u32 = 2;
+
+impl Node {
+    const fn encode(self) -> u32 {
+        match self {
+            Self::Empty(state) => state << TAG_BITS,
+            Self::Occupied(leaf) => leaf << TAG_BITS | 1,
+            Self::Divided(block) => block << TAG_BITS | 2,
+        }
+    }
+
+    const fn decode(word: u32) -> Self {
+        let payload = word >> TAG_BITS;
+        match word & 3 {
+            0 => Self::Empty(payload),
+            1 => Self::Occupied(payload),
+            _ => Self::Divided(payload),
+        }
+    }
+}
+
+/// The tree. Contents of occupied cells are kept beside it by whoever built it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct CellTree {
+    root: Aabb,
+    root_node: u32,
+    blocks: Vec<[u32; 8]>,
+    stats: CellTreeStats,
+}
+
+/// What was built.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct CellTreeStats {
+    /// Cells without contents.
+    pub empty: u64,
+    /// Cells with contents.
+    pub occupied: u64,
+    /// Cells with children.
+    pub divided: u64,
+    /// The deepest level that was reached; the root is 0.
+    pub depth: u32,
+    /// Bytes of nodes and contents.
+    pub bytes: u64,
+    /// Cells that were left undivided because the depth limit was reached.
+    pub stopped_by_depth: u64,
+    /// Whether division stopped because of the memory limit.
+    pub stopped_by_memory: bool,
+}
+
+impl CellTree {
+    /// The cube that the tree divides.
+    #[must_use]
+    pub const fn root(&self) -> &Aabb {
+        &self.root
+    }
+
+    /// Figures about the tree.
+    #[must_use]
+    pub const fn stats(&self) -> &CellTreeStats {
+        &self.stats
+    }
+
+    /// The nodes as they lie in memory, for hashing and comparing.
+    #[must_use]
+    pub fn words(&self) -> impl Iterator<Item = u32> + '_ {
+        std::iter::once(self.root_node).chain(self.blocks.iter().flatten().copied())
+    }
+
+    /// The smallest cell that holds `point`, `None` outside the root.
+    #[must_use]
+    pub fn locate(&self, point: DVec3) -> Option<(CellKey, Node)> {
+        if !self.root.contains(point) {
+            return None;
+        }
+        let mut key = CellKey::ROOT;
+        let mut node = Node::decode(self.root_node);
+        let (mut min, mut size) = (self.root.min, self.root.size().x);
+        while let Node::Divided(block) = node {
+            size *= 0.5;
+            let upper = point.cmpge(min + size);
+            let octant = upper.bitmask();
+            min += DVec3::new(
+                f64::from(octant & 1),
+                f64::from(octant >> 1 & 1),
+                f64::from(octant >> 2 & 1),
+            ) * size;
+            key = key.child(octant);
+            node = Node::decode(self.blocks[block as usize][octant as usize]);
+        }
+        Some((key, node))
+    }
+}
+
+/// The cube around `bounds` whose cell faces are exact in `f64` down to the deepest level: its size
+/// is a short multiple of a power of two, and its corner a multiple of the smallest cell.
+#[must_use]
+pub fn enclosing_cube(bounds: &Aabb) -> Aabb {
+    let extent = bounds.size().max_element();
+    let extent = if extent > 0.0 { extent } else { 1.0 };
+    // The power of two at or below the extent; then the size in sixteenths of it.
+    let unit = libm::ldexp(1.0, libm::ilogb(extent) - 4);
+    let size = unit * (libm::ceil(extent / unit) + 1.0);
+    let step = libm::ldexp(unit, -(octray_math::MAX_DEPTH as i32));
+    let corner = bounds.center() - size * 0.5;
+    let min = DVec3::from_array(corner.to_array().map(|x| libm::floor(x / step) * step));
+    Aabb::new(min, min + size)
+}

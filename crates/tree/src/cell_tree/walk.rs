@@ -1,0 +1,124 @@
+//! The ordered traversal: cells front to back, each with the part of the line inside it.
+
+use octray_math::{DVec3, Interval, MAX_DEPTH, Ray};
+
+use super::{CellTree, Node};
+
+/// A cell on the way: seven siblings may wait on every level.
+#[derive(Clone, Copy)]
+struct Waiting {
+    node: u32,
+    min: DVec3,
+    size: f64,
+    span: Interval,
+}
+
+const STACK: usize = 7 * MAX_DEPTH as usize + 8;
+
+/// The line as the slab test wants it.
+struct Slabs {
+    origin: DVec3,
+    inverse: DVec3,
+    parallel: [bool; 3],
+    margin: f64,
+}
+
+impl Slabs {
+    /// The part of `within` inside the cube grown by the margin.
+    fn clip(&self, min: DVec3, size: f64, within: Interval) -> Interval {
+        let mut span = within;
+        for axis in 0..3 {
+            let low = min[axis] - self.margin - self.origin[axis];
+            let high = min[axis] + size + self.margin - self.origin[axis];
+            if self.parallel[axis] {
+                if low > 0.0 || high < 0.0 {
+                    return Interval::EMPTY;
+                }
+                continue;
+            }
+            let (a, b) = (low * self.inverse[axis], high * self.inverse[axis]);
+            span = span.intersection(&Interval::new(a.min(b), a.max(b)));
+        }
+        span
+    }
+}
+
+impl CellTree {
+    /// Visits the occupied cells that the line meets in `within`, front to back.
+    ///
+    /// `visit` gets the index of the contents and the part of the line inside the cell (grown by
+    /// half of [`CellTree::CONTENT_MARGIN`]); it returns the parameter beyond which nothing
+    /// matters any more: cells that begin later are not visited. Returns how many cells were
+    /// entered.
+    pub fn walk(
+        &self,
+        ray: &Ray,
+        within: Interval,
+        mut visit: impl FnMut(u32, Interval) -> f64,
+    ) -> u64 {
+        let d = ray.direction;
+        let slabs = Slabs {
+            origin: ray.origin,
+            inverse: d.recip(),
+            // A reciprocal that overflows is as good as parallel: the line leaves the slab beyond
+            // any parameter that matters.
+            parallel: d.to_array().map(|x| !x.recip().is_finite()),
+            margin: self.root.size().x * (0.5 * Self::CONTENT_MARGIN),
+        };
+        let mirror = u32::from(d.x < 0.0) | u32::from(d.y < 0.0) << 1 | u32::from(d.z < 0.0) << 2;
+        let mut limit = within.end;
+        let mut entered = 0;
+        let span = slabs.clip(self.root.min, self.root.size().x, within);
+        if span.is_empty() {
+            return 0;
+        }
+        let mut stack = [Waiting {
+            node: self.root_node,
+            min: self.root.min,
+            size: self.root.size().x,
+            span,
+        }; STACK];
+        let mut height = 1;
+        while height > 0 {
+            height -= 1;
+            let cell = stack[height];
+            if cell.span.start > limit {
+                continue;
+            }
+            entered += 1;
+            match Node::decode(cell.node) {
+                Node::Empty(_) => {}
+                Node::Occupied(leaf) => limit = limit.min(visit(leaf, cell.span)),
+                Node::Divided(block) => {
+                    let size = cell.size * 0.5;
+                    let children = &self.blocks[block as usize];
+                    // The farthest octant is pushed first.
+                    for i in (0..8).rev() {
+                        let octant = i ^ mirror;
+                        let node = children[octant as usize];
+                        if matches!(Node::decode(node), Node::Empty(_)) {
+                            continue;
+                        }
+                        let corner = DVec3::new(
+                            f64::from(octant & 1),
+                            f64::from(octant >> 1 & 1),
+                            f64::from(octant >> 2 & 1),
+                        );
+                        let min = cell.min + corner * size;
+                        let span = slabs.clip(min, size, cell.span);
+                        if !span.is_empty() {
+                            stack[height] = Waiting {
+                                node,
+                                min,
+                                size,
+                                span,
+                            };
+                            height += 1;
+                        }
+                    }
+                }
+            }
+        }
+        entered
+    }
+}
