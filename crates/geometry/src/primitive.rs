@@ -168,6 +168,19 @@ impl ConvexPolyhedron {
 }
 
 impl Primitive {
+    /// How many faces it has; of a mesh, triangles.
+    #[must_use]
+    pub fn face_count(&self) -> u64 {
+        match self {
+            Self::Sphere { .. } | Self::Torus { .. } | Self::HalfSpace { .. } => 1,
+            Self::Box { .. } => 6,
+            Self::Cylinder { .. } | Self::Cone { .. } => 3,
+            Self::Convex(polyhedron) => polyhedron.planes.len() as u64,
+            // One more stands for the whole mesh in expressions.
+            Self::Mesh(mesh) => mesh.triangles().len() as u64 + 1,
+        }
+    }
+
     /// The box around the solid in its own frame, unbounded for half-spaces.
     #[must_use]
     pub fn bounds(&self) -> Aabb {

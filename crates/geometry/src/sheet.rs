@@ -90,6 +90,15 @@ impl Sheet {
         })
     }
 
+    /// How many faces it has; of a mesh, triangles.
+    #[must_use]
+    pub fn faces(&self) -> u64 {
+        match self {
+            Self::Mesh { mesh, .. } => mesh.triangles().len() as u64,
+            Self::Shell { solid, clip } => solid.faces().saturating_add(clip.faces()),
+        }
+    }
+
     /// A box around the sheet.
     #[must_use]
     pub fn bounds(&self) -> Aabb {

@@ -23,6 +23,8 @@ struct Measured {
     depth: u32,
     /// Primitives, those of shared subtrees counted at every use.
     operands: u64,
+    /// Faces, likewise.
+    faces: u64,
 }
 
 /// One node of a [`Solid`].
@@ -88,12 +90,21 @@ impl From<SolidNode> for Solid {
     fn from(node: SolidNode) -> Self {
         let below = node.children().iter();
         let depth = 1 + below.clone().map(|s| s.0.depth).max().unwrap_or(0);
-        let own = u64::from(matches!(node, SolidNode::Primitive(_)));
-        let operands = below.fold(own, |sum, s| sum.saturating_add(s.0.operands));
+        let own = match &node {
+            SolidNode::Primitive(primitive) => (1_u64, primitive.face_count()),
+            _ => (0, 0),
+        };
+        let (operands, faces) = below.fold(own, |(operands, faces), s| {
+            (
+                operands.saturating_add(s.0.operands),
+                faces.saturating_add(s.0.faces),
+            )
+        });
         Self(Arc::new(Measured {
             node,
             depth,
             operands,
+            faces,
         }))
     }
 }
@@ -141,6 +152,12 @@ impl Solid {
     #[must_use]
     pub fn operands(&self) -> u64 {
         self.0.operands
+    }
+
+    /// How many faces the primitives have together.
+    #[must_use]
+    pub fn faces(&self) -> u64 {
+        self.0.faces
     }
 
     /// Checks that the tree is not too deep or too large to be worked on.

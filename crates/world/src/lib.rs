@@ -1,8 +1,17 @@
 //! A scene made ready for rays: the accelerators, and what rays ask of them.
 //!
 //! [`World`] is the one door between the structures below it and everything that traces rays
-//! above it. Its answers are the same bits whatever structure finds them.
+//! above it. Its answers are the same bits whatever structure finds them: a structure only proposes
+//! what to test, one `f64` function per shape decides, and ties go to the lowest face.
 
+mod interact;
+mod line;
 mod query;
+mod sheets;
+mod solids;
+mod world;
 
 pub use query::{Counters, Departure, Hit, RayQuery, Region, SurfaceHit};
+pub use world::{Accel, World, WorldConfig, WorldError, WorldStats};
+
+pub use octray_tree::{CellTreeStats, Criteria};

@@ -92,6 +92,12 @@ impl Lowering {
         (faces, surfaces, self.meshes)
     }
 
+    /// How many faces there are so far.
+    #[must_use]
+    pub const fn face_count(&self) -> usize {
+        self.faces.len()
+    }
+
     /// How many faces share a surface that another face brought.
     #[must_use]
     pub const fn merged_surfaces(&self) -> usize {

@@ -154,8 +154,7 @@ fn torus(minor: f64, o: DVec3, d: DVec3) -> SignChanges {
     knots[knot_count] = limit;
     let mut changes = SignChanges::none(false);
     let (mut u0, mut f0) = (knots[0], 1.0_f64);
-    for i in 1..=knot_count {
-        let u1 = knots[i];
+    for (i, &u1) in knots.iter().enumerate().take(knot_count + 1).skip(1) {
         let f1 = if i == knot_count { 1.0 } else { distance(u1) };
         if (f0 < 0.0) != (f1 < 0.0) && changes.count < 4 {
             changes.t[changes.count] = roots::bracketed(distance, u0, u1, f0, f1);

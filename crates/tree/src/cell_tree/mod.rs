@@ -98,7 +98,6 @@ impl CellTree {
     }
 
     /// The nodes as they lie in memory, for hashing and comparing.
-    #[must_use]
     pub fn words(&self) -> impl Iterator<Item = u32> + '_ {
         std::iter::once(self.root_node).chain(self.blocks.iter().flatten().copied())
     }

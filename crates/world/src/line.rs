@@ -1,0 +1,70 @@
+//! Rays as the structures see them: moved and scaled so that rounding stays small.
+
+use octray_math::{DVec3, Ray};
+
+use crate::{Departure, RayQuery};
+
+/// A ray whose origin lies at its closest approach to the scene's centre and whose direction's
+/// largest component lies in `[1, 2)`.
+///
+/// Everything is tested against `ray` and compared by its parameter `s`; the user's parameter is
+/// `t = (s - origin) / scale`. Far origins then cost no digits, and no length of direction
+/// overflows.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Line {
+    pub(crate) ray: Ray,
+    /// Parameter of the query's origin; `-inf` where the whole line counts.
+    pub(crate) origin: f64,
+    /// Parameter of the query's end.
+    pub(crate) end: f64,
+    pub(crate) departure: Departure,
+    shift: f64,
+    scale: f64,
+}
+
+impl Line {
+    /// `None` for a ray with a NaN, an infinity or no direction: it meets nothing.
+    pub(crate) fn new(query: &RayQuery, center: DVec3) -> Option<Self> {
+        let Ray { origin, direction } = query.ray;
+        let largest = direction.abs().max_element();
+        if !(origin.is_finite() && direction.is_finite() && largest > 0.0) {
+            return None;
+        }
+        // Powers of two: exact, except for directions so small that they have few digits anyway.
+        let exponent = libm::ilogb(largest);
+        let scale = libm::ldexp(1.0, exponent);
+        let direction = DVec3::from_array(direction.to_array().map(|x| libm::ldexp(x, -exponent)));
+        let unit = Ray::new(origin, direction);
+        let shift = unit.closest_approach(center);
+        let ray = unit.shifted(shift);
+        if !(ray.origin.is_finite() && scale > 0.0) {
+            return None;
+        }
+        Some(Self {
+            ray,
+            origin: -shift,
+            end: query.t_max * scale - shift,
+            departure: query.departure,
+            shift,
+            scale,
+        })
+    }
+
+    /// The same line with all its parameters counting.
+    pub(crate) const fn whole(mut self) -> Self {
+        self.origin = f64::NEG_INFINITY;
+        self.end = f64::INFINITY;
+        self
+    }
+
+    /// The user's parameter. Never negative on a half-line: what counts lies after the origin, and
+    /// rounding must not say otherwise.
+    pub(crate) fn t(&self, s: f64) -> f64 {
+        let t = (s + self.shift) / self.scale;
+        if self.origin.is_finite() {
+            t.max(0.0)
+        } else {
+            t
+        }
+    }
+}

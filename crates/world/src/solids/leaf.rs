@@ -1,0 +1,140 @@
+//! What occupied cells hold, in flat arrays. Equal expressions are stored once.
+
+use std::collections::HashMap;
+use std::ops::Range;
+
+use octray_geometry::csg::Face;
+use octray_geometry::csg::faces;
+
+use super::cells::Content;
+
+/// The contents of all leaves.
+#[derive(Debug, Default)]
+pub(crate) struct Leaves {
+    leaves: Vec<Leaf>,
+    surfaces: Vec<u32>,
+    objects: Vec<LeafObject>,
+    words: Vec<u32>,
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Leaf {
+    surfaces: [u32; 2],
+    objects: [u32; 2],
+    base: u32,
+}
+
+/// An object whose boundary passes through the cell.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct LeafObject {
+    /// Index into the ranked objects.
+    pub(super) rank: u32,
+    expression: [u32; 2],
+    /// Empty: not clipped.
+    clip: [u32; 2],
+}
+
+/// One leaf's slices.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct LeafView<'a> {
+    /// The surfaces to cross, increasing.
+    pub(super) surfaces: &'a [u32],
+    /// In the order of their ranks.
+    pub(super) objects: &'a [LeafObject],
+    /// 1 + the lowest rank among the objects that fill the cell, 0 for none.
+    pub(super) base: u32,
+    words: &'a [u32],
+}
+
+impl LeafView<'_> {
+    pub(super) fn expression(&self, object: &LeafObject) -> &[u32] {
+        &self.words[range(object.expression)]
+    }
+
+    /// `None` where all of the boundary counts.
+    pub(super) fn clip(&self, object: &LeafObject) -> Option<&[u32]> {
+        let words = &self.words[range(object.clip)];
+        (!words.is_empty()).then_some(words)
+    }
+}
+
+const fn range(ends: [u32; 2]) -> Range<usize> {
+    ends[0] as usize..ends[1] as usize
+}
+
+impl Leaves {
+    /// From the contents of the cells, in the order of their indices.
+    pub(super) fn new(contents: &[Content], all_faces: &[Face]) -> Self {
+        let mut leaves = Self::default();
+        let mut seen: HashMap<Vec<u32>, [u32; 2]> = HashMap::new();
+        for content in contents {
+            let first = [leaves.surfaces.len() as u32, leaves.objects.len() as u32];
+            let mut surfaces = Vec::new();
+            for active in &content.objects {
+                let mut store = |words: &[u32]| {
+                    surfaces.extend(faces(words).map(|f| all_faces[f.0 as usize].surface.0));
+                    *seen.entry(words.to_vec()).or_insert_with(|| {
+                        let start = leaves.words.len() as u32;
+                        leaves.words.extend_from_slice(words);
+                        [start, leaves.words.len() as u32]
+                    })
+                };
+                let expression = store(active.expression.words());
+                let clip = active
+                    .clip
+                    .as_ref()
+                    .map_or([0, 0], |clip| store(clip.words()));
+                leaves.objects.push(LeafObject {
+                    rank: active.rank,
+                    expression,
+                    clip,
+                });
+            }
+            surfaces.sort_unstable();
+            surfaces.dedup();
+            leaves.surfaces.extend(surfaces);
+            leaves.leaves.push(Leaf {
+                surfaces: [first[0], leaves.surfaces.len() as u32],
+                objects: [first[1], leaves.objects.len() as u32],
+                base: content.base,
+            });
+        }
+        leaves
+    }
+
+    pub(super) fn get(&self, leaf: u32) -> LeafView<'_> {
+        let leaf = &self.leaves[leaf as usize];
+        LeafView {
+            surfaces: &self.surfaces[range(leaf.surfaces)],
+            objects: &self.objects[range(leaf.objects)],
+            base: leaf.base,
+            words: &self.words,
+        }
+    }
+
+    /// Everything, for hashing and comparing.
+    pub(super) fn words(&self) -> impl Iterator<Item = u32> + '_ {
+        let leaves = self.leaves.iter().flat_map(|l| {
+            [
+                l.surfaces[0],
+                l.surfaces[1],
+                l.objects[0],
+                l.objects[1],
+                l.base,
+            ]
+        });
+        let objects = self.objects.iter().flat_map(|o| {
+            [
+                o.rank,
+                o.expression[0],
+                o.expression[1],
+                o.clip[0],
+                o.clip[1],
+            ]
+        });
+        leaves
+            .chain(self.surfaces.iter().copied())
+            .chain(objects)
+            .chain(self.words.iter().copied())
+    }
+}

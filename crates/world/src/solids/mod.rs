@@ -1,0 +1,171 @@
+//! The solids of a world: faces, surfaces, the octree over them, and sweeps along lines.
+
+mod cells;
+mod interact;
+mod leaf;
+mod prepare;
+mod roots;
+mod sweep;
+
+use octray_geometry::csg::Face;
+use octray_geometry::mesh::MeshSolid;
+use octray_geometry::surface::Surface;
+use octray_math::Interval;
+use octray_scene::ObjectId;
+use octray_tree::{CellTree, CellTreeStats, Node};
+
+pub(crate) use leaf::Leaves;
+pub(crate) use roots::Scratch;
+pub(crate) use sweep::Interface;
+
+use crate::line::Line;
+use crate::{Counters, Region};
+
+/// An object made of faces. Their order is the rank by which regions are decided: higher priority
+/// first, then the smaller object, then the later one.
+#[derive(Debug)]
+pub(crate) struct Ranked {
+    pub(crate) object: ObjectId,
+    priority: i32,
+    /// Whether it is a sheet: its boundary counts, its inside does not.
+    shell: bool,
+}
+
+/// A closed mesh as an operand.
+#[derive(Debug)]
+struct MeshSurface {
+    solid: MeshSolid,
+    /// The literal that stands for it in the expression.
+    literal: u32,
+    /// The identity of its first triangle.
+    first_face: u32,
+}
+
+/// See the module.
+#[derive(Debug)]
+pub(crate) struct Solids {
+    faces: Vec<Face>,
+    /// For each face the index into `ranked` of the object it belongs to.
+    face_owner: Vec<u32>,
+    /// Surfaces of one formula; those of meshes are numbered after them.
+    surfaces: Vec<Surface>,
+    meshes: Vec<MeshSurface>,
+    ranked: Vec<Ranked>,
+    priorities_differ: bool,
+    leaves: Leaves,
+    /// The octree over the bounded objects; `None` for brute force and without any.
+    tree: Option<CellTree>,
+    /// The leaf for what lies outside the tree: the unbounded objects, or everything.
+    outer: Option<u32>,
+    merged_surfaces: usize,
+}
+
+impl Solids {
+    /// Sweeps along the line, cell by cell and front to back.
+    ///
+    /// `visit` gets every interface and returns the parameter beyond which nothing matters any
+    /// more. An interface near a cell's face may be visited from both sides.
+    pub(crate) fn sweep_line(
+        &self,
+        line: &Line,
+        limit: f64,
+        scratch: &mut Scratch,
+        counters: &mut Counters,
+        mut visit: impl FnMut(&Interface) -> f64,
+    ) {
+        scratch.begin(self.surfaces.len() + self.meshes.len());
+        let all = Interval::new(line.origin, line.end);
+        let in_tree = self.tree.as_ref().and_then(|tree| {
+            let margin = tree.root().size().x * (0.5 * CellTree::CONTENT_MARGIN);
+            let span = tree
+                .root()
+                .inflated(margin)
+                .clip(&line.ray)
+                .intersection(&all);
+            (!span.is_empty()).then_some((tree, span))
+        });
+        let Some((tree, span)) = in_tree else {
+            self.sweep_outer(line, all, limit, scratch, counters, &mut visit);
+            return;
+        };
+        // Outside the cube all bounded objects are false, so the outer leaf is right there.
+        let before = Interval::new(all.start, span.start);
+        let mut limit = self.sweep_outer(line, before, limit, scratch, counters, &mut visit);
+        let within = Interval::new(span.start, span.end.min(limit));
+        let mut cells = 0;
+        if !within.is_empty() {
+            cells = tree.walk(&line.ray, within, |leaf, part| {
+                limit = self.sweep(line, leaf, part, limit, scratch, counters, &mut visit);
+                limit
+            });
+        }
+        counters.cells += cells;
+        let after = Interval::new(span.end, all.end);
+        self.sweep_outer(line, after, limit, scratch, counters, &mut visit);
+    }
+
+    fn sweep_outer(
+        &self,
+        line: &Line,
+        part: Interval,
+        limit: f64,
+        scratch: &mut Scratch,
+        counters: &mut Counters,
+        visit: &mut impl FnMut(&Interface) -> f64,
+    ) -> f64 {
+        match self.outer {
+            Some(leaf) if part.start <= limit && !part.is_empty() => {
+                self.sweep(line, leaf, part, limit, scratch, counters, visit)
+            }
+            _ => limit,
+        }
+    }
+
+    /// The region at parameter `s` of the line.
+    pub(crate) fn region_at(
+        &self,
+        line: &Line,
+        s: f64,
+        scratch: &mut Scratch,
+        counters: &mut Counters,
+    ) -> Region {
+        scratch.begin(self.surfaces.len() + self.meshes.len());
+        let point = line.ray.at(s);
+        let located = self.tree.as_ref().and_then(|tree| tree.locate(point));
+        let leaf = match located {
+            Some((_, Node::Empty(state))) => return self.region_of_state(state),
+            Some((_, Node::Occupied(leaf))) => Some(leaf),
+            _ => self.outer,
+        };
+        match leaf {
+            Some(leaf) => self.region_in(line, leaf, s, scratch, counters),
+            None => Region::OUTSIDE,
+        }
+    }
+
+    /// The region that an empty cell's (or a leaf's base) state stands for: 0 is outside.
+    fn region_of_state(&self, state: u32) -> Region {
+        match state {
+            0 => Region::OUTSIDE,
+            rank => Region::of(self.ranked[rank as usize - 1].object),
+        }
+    }
+
+    pub(crate) fn tree_stats(&self) -> Option<&CellTreeStats> {
+        self.tree.as_ref().map(CellTree::stats)
+    }
+
+    /// The bytes of the tree and its leaves, for hashing.
+    pub(crate) fn words(&self) -> impl Iterator<Item = u32> + '_ {
+        let tree = self.tree.iter().flat_map(CellTree::words);
+        tree.chain(self.leaves.words())
+    }
+
+    pub(crate) fn surface_count(&self) -> usize {
+        self.surfaces.len() + self.meshes.len()
+    }
+
+    pub(crate) const fn merged_surfaces(&self) -> usize {
+        self.merged_surfaces
+    }
+}

@@ -1,0 +1,270 @@
+//! From the scene's objects to faces, ranks and cells.
+
+use std::cmp::Ordering;
+
+use octray_geometry::csg::{Code, Constant, Face, Lowering, MeshOperand};
+use octray_geometry::mesh::{MeshError, MeshSolid};
+use octray_geometry::{FaceId, MaterialId, Sheet, Solid};
+use octray_math::Aabb;
+use octray_scene::{Object, ObjectId, Scene, Shape};
+use octray_tree::{CellTree, Criteria, cell_tree};
+
+use super::cells::{Active, Cells, Content};
+use super::{Leaves, MeshSurface, Ranked, Solids};
+
+/// An object before its rank is known.
+struct Candidate<'a> {
+    id: ObjectId,
+    object: &'a Object,
+    boundary: &'a Solid,
+    clip: Option<&'a Solid>,
+    bounds: Aabb,
+}
+
+impl<'a> Candidate<'a> {
+    fn new(index: usize, object: &'a Object) -> Option<Self> {
+        let (boundary, clip) = match &object.shape {
+            Shape::Solid(solid) => (solid, None),
+            Shape::Sheet(Sheet::Shell { solid, clip }) => (solid, Some(clip)),
+            Shape::Sheet(Sheet::Mesh { .. }) => return None,
+        };
+        Some(Self {
+            id: ObjectId(index as u32),
+            object,
+            boundary,
+            clip,
+            bounds: object.shape.bounds(),
+        })
+    }
+
+    /// Higher priority, then smaller, then later: what is inside something else is seen there.
+    fn rank(&self, other: &Self) -> Ordering {
+        let size = |c: &Self| {
+            if c.bounds.is_bounded() {
+                c.bounds.diagonal()
+            } else {
+                f64::INFINITY
+            }
+        };
+        (other.object.priority.cmp(&self.object.priority))
+            .then(size(self).total_cmp(&size(other)))
+            .then(other.id.cmp(&self.id))
+    }
+}
+
+impl Solids {
+    /// The solids of the scene; with `criteria` in an octree, else for brute force.
+    ///
+    /// # Errors
+    /// A mesh operand cannot be used as a solid; the object's name comes with the reason.
+    pub(crate) fn prepare(
+        scene: &Scene,
+        criteria: Option<&Criteria>,
+    ) -> Result<Self, (String, MeshError)> {
+        let objects = scene.objects().iter().enumerate();
+        let mut candidates: Vec<Candidate<'_>> = objects
+            .filter_map(|(index, object)| Candidate::new(index, object))
+            .collect();
+        // Faces are numbered in the order of the objects, ranks are a matter of this module.
+        let mut lowering = Lowering::new(scene_size(&candidates));
+        let mut lowered = Vec::with_capacity(candidates.len());
+        let mut owners = Vec::new();
+        for candidate in &candidates {
+            let boundary = lowering.lower(candidate.boundary);
+            let clip = candidate.clip.map(|clip| lowering.lower(clip));
+            owners.resize(lowering.face_count(), candidate.id);
+            lowered.push((candidate.id, boundary, clip));
+        }
+        candidates.sort_by(Candidate::rank);
+        let ranked: Vec<Ranked> = candidates.iter().map(Ranked::new).collect();
+        let mut rank_of = vec![u32::MAX; scene.objects().len()];
+        for (rank, object) in ranked.iter().enumerate() {
+            rank_of[object.object.0 as usize] = rank as u32;
+        }
+        let merged_surfaces = lowering.merged_surfaces();
+        let (faces, surfaces, operands) = lowering.finish();
+        let face_owner: Vec<u32> = owners.iter().map(|id| rank_of[id.0 as usize]).collect();
+        let meshes = mesh_surfaces(
+            &operands,
+            &faces,
+            &face_owner,
+            &ranked,
+            scene,
+            surfaces.len(),
+        )?;
+
+        let mut root = Content::default();
+        let mut unbounded = Content::default();
+        for (id, boundary, clip) in lowered {
+            let rank = rank_of[id.0 as usize];
+            let shell = ranked[rank as usize].shell;
+            add(&mut root, rank, shell, &boundary, clip.as_ref());
+            if !candidates[rank as usize].bounds.is_bounded() {
+                add(&mut unbounded, rank, shell, &boundary, clip.as_ref());
+            }
+        }
+        root.objects.sort_by_key(|active| active.rank);
+        unbounded.objects.sort_by_key(|active| active.rank);
+
+        let bounds = candidates
+            .iter()
+            .map(|c| c.bounds)
+            .filter(|b| b.is_bounded())
+            .fold(Aabb::EMPTY, Aabb::union);
+        let mut contents = Vec::new();
+        let mut tree = None;
+        let mut outer = root;
+        if let Some(criteria) = criteria.filter(|_| !bounds.is_empty()) {
+            let cells = Cells {
+                faces: &faces,
+                surfaces: &surfaces,
+                meshes: &meshes,
+                ranked: &ranked,
+            };
+            let cube = cell_tree::enclosing_cube(&bounds);
+            let (built, leaves) = CellTree::build(cube, outer, &cells, criteria);
+            contents = leaves;
+            tree = Some(built);
+            outer = unbounded;
+        }
+        let outer_leaf = (!outer.objects.is_empty() || outer.base != 0).then(|| {
+            contents.push(outer);
+            contents.len() as u32 - 1
+        });
+        let leaves = Leaves::new(&contents, &faces);
+        let priorities_differ = ranked
+            .windows(2)
+            .any(|pair| pair[0].priority != pair[1].priority);
+        Ok(Self {
+            faces,
+            face_owner,
+            surfaces,
+            meshes,
+            ranked,
+            priorities_differ,
+            leaves,
+            tree,
+            outer: outer_leaf,
+            merged_surfaces,
+        })
+    }
+
+    /// How many face ids the solids use; triangles of sheets are numbered from here.
+    pub(crate) fn face_count(&self) -> u32 {
+        match self.meshes.last() {
+            Some(mesh) => mesh.first_face + mesh.solid.triangle_count(),
+            None => self.faces.len() as u32,
+        }
+    }
+
+    /// The object and material of one of the solids' faces.
+    pub(crate) fn owner(&self, face: FaceId, scene: &Scene) -> Option<(ObjectId, MaterialId)> {
+        let (literal, triangle) = match self.mesh_triangle(face) {
+            Some((mesh, triangle)) => (self.meshes[mesh].literal, Some((mesh, triangle))),
+            None => (face.0, None),
+        };
+        let owner = *self.face_owner.get(literal as usize)?;
+        let object = self.ranked[owner as usize].object;
+        let of_triangle = triangle.and_then(|(mesh, t)| self.meshes[mesh].solid.material(t));
+        let material = of_triangle
+            .or(self.faces[literal as usize].material)
+            .unwrap_or(scene.objects()[object.0 as usize].material);
+        Some((object, material))
+    }
+
+    /// Which mesh operand and which of its triangles a face is.
+    pub(super) fn mesh_triangle(&self, face: FaceId) -> Option<(usize, u32)> {
+        let mesh = self
+            .meshes
+            .partition_point(|m| m.first_face <= face.0)
+            .checked_sub(1)?;
+        let triangle = face.0 - self.meshes[mesh].first_face;
+        (triangle < self.meshes[mesh].solid.triangle_count()).then_some((mesh, triangle))
+    }
+
+    /// Whether the expression wants the outside of a mesh operand.
+    pub(super) fn mesh_is_complemented(&self, mesh: usize) -> bool {
+        self.faces[self.meshes[mesh].literal as usize].inside_is_positive
+    }
+}
+
+impl Ranked {
+    fn new(candidate: &Candidate<'_>) -> Self {
+        Self {
+            object: candidate.id,
+            priority: candidate.object.priority,
+            shell: matches!(candidate.object.shape, Shape::Sheet(_)),
+        }
+    }
+}
+
+/// The largest coordinate of the bounded objects, or 1: the unit of the surface table's tolerance.
+fn scene_size(candidates: &[Candidate<'_>]) -> f64 {
+    let largest = candidates
+        .iter()
+        .filter(|c| c.bounds.is_bounded() && !c.bounds.is_empty())
+        .map(|c| c.bounds.min.abs().max(c.bounds.max.abs()).max_element())
+        .fold(0.0, f64::max);
+    if largest > 0.0 { largest } else { 1.0 }
+}
+
+fn add(
+    content: &mut Content,
+    rank: u32,
+    shell: bool,
+    boundary: &Result<Code, Constant>,
+    clip: Option<&Result<Code, Constant>>,
+) {
+    let expression = match boundary {
+        Ok(code) => code.clone(),
+        Err(Constant::True) if !shell => {
+            if content.base == 0 || rank + 1 < content.base {
+                content.base = rank + 1;
+            }
+            return;
+        }
+        Err(_) => return,
+    };
+    let clip = match clip {
+        None | Some(Err(Constant::True)) => None,
+        Some(Err(Constant::False)) => return,
+        Some(Ok(code)) => Some(code.clone()),
+    };
+    content.objects.push(Active {
+        rank,
+        expression,
+        clip,
+    });
+}
+
+fn mesh_surfaces(
+    operands: &[MeshOperand],
+    faces: &[Face],
+    face_owner: &[u32],
+    ranked: &[Ranked],
+    scene: &Scene,
+    first_mesh_surface: usize,
+) -> Result<Vec<MeshSurface>, (String, MeshError)> {
+    let mut literals = vec![0; operands.len()];
+    for (literal, face) in faces.iter().enumerate() {
+        if let Some(mesh) = (face.surface.0 as usize).checked_sub(first_mesh_surface) {
+            literals[mesh] = literal as u32;
+        }
+    }
+    let mut first_face = faces.len() as u32;
+    let mut meshes = Vec::with_capacity(operands.len());
+    for (operand, literal) in operands.iter().zip(literals) {
+        let solid = MeshSolid::new(&operand.mesh, &operand.world_from_mesh).map_err(|error| {
+            let object = ranked[face_owner[literal as usize] as usize].object;
+            (scene.objects()[object.0 as usize].name.clone(), error)
+        })?;
+        let triangles = solid.triangle_count();
+        meshes.push(MeshSurface {
+            solid,
+            literal,
+            first_face,
+        });
+        first_face += triangles;
+    }
+    Ok(meshes)
+}

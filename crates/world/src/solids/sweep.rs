@@ -1,0 +1,261 @@
+//! The merge of sorted crossings (Roth 1982) inside one cell, regularised.
+//!
+//! At one parameter all surfaces that are crossed there change sides together; an object has a
+//! boundary there only if its expression differs before and after. No tolerance acts here: equal
+//! parameters mean coincidence because coincident surfaces are one (see `surface::table`).
+
+use octray_geometry::FaceId;
+use octray_geometry::csg::{changed_face, evaluate};
+use octray_math::Interval;
+
+use super::leaf::{LeafObject, LeafView};
+use super::{Scratch, Solids};
+use crate::line::Line;
+use crate::{Counters, Region};
+
+/// A surface is crossed.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Event {
+    s: f64,
+    surface: u32,
+    triangle: u32,
+}
+
+/// A boundary on a line.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Interface {
+    /// In the line's parameter.
+    pub(crate) s: f64,
+    /// Whose boundary is reported.
+    pub(crate) face: FaceId,
+    /// Whether the line enters the face's object.
+    pub(crate) entering: bool,
+    pub(crate) from: Region,
+    pub(crate) to: Region,
+}
+
+impl Solids {
+    /// Visits the interfaces of one leaf in `span`, in order, and returns the new limit.
+    #[expect(
+        clippy::too_many_arguments,
+        reason = "one hot function with its working memory"
+    )]
+    pub(super) fn sweep(
+        &self,
+        line: &Line,
+        leaf: u32,
+        span: Interval,
+        mut limit: f64,
+        scratch: &mut Scratch,
+        counters: &mut Counters,
+        visit: &mut impl FnMut(&Interface) -> f64,
+    ) -> f64 {
+        let view = self.leaves.get(leaf);
+        scratch.events.clear();
+        self.place(
+            &view,
+            line,
+            span.start,
+            scratch,
+            counters,
+            Some(span.end.min(limit)),
+        );
+        if scratch.events.is_empty() {
+            return limit;
+        }
+        scratch
+            .events
+            .sort_unstable_by(|a, b| a.s.total_cmp(&b.s).then(a.surface.cmp(&b.surface)));
+        let Scratch {
+            events,
+            negative,
+            inside,
+            inside_after,
+            ..
+        } = scratch;
+        self.memberships(&view, negative, inside);
+        for group in events.chunk_by(|a, b| a.s == b.s) {
+            if group[0].s > limit {
+                break;
+            }
+            for event in group {
+                negative[event.surface as usize] ^= true;
+            }
+            self.memberships(&view, negative, inside_after);
+            if inside != inside_after
+                && let Some(found) = self.interface(&view, group, negative, inside, inside_after)
+            {
+                limit = limit.min(visit(&found));
+            }
+            std::mem::swap(inside, inside_after);
+        }
+        limit
+    }
+
+    /// Puts every surface of the leaf on its side at `start`, and collects the crossings from there
+    /// to `end` if one is given.
+    fn place(
+        &self,
+        view: &LeafView<'_>,
+        line: &Line,
+        start: f64,
+        scratch: &mut Scratch,
+        counters: &mut Counters,
+        end: Option<f64>,
+    ) {
+        for &surface in view.surfaces {
+            let slot = self.roots(surface, line, scratch, counters);
+            let Scratch {
+                roots,
+                events,
+                negative,
+                ..
+            } = scratch;
+            let (ahead, side) = slot.ahead(roots, start);
+            negative[surface as usize] = side;
+            if let Some(end) = end {
+                let roots = roots[ahead].iter().take_while(|r| r.s <= end);
+                events.extend(roots.map(|r| Event {
+                    s: r.s,
+                    surface,
+                    triangle: r.triangle,
+                }));
+            }
+        }
+    }
+
+    fn truth(&self, negative: &[bool], face: FaceId) -> bool {
+        let face = &self.faces[face.0 as usize];
+        negative[face.surface.0 as usize] != face.inside_is_positive
+    }
+
+    fn memberships(&self, view: &LeafView<'_>, negative: &[bool], inside: &mut Vec<bool>) {
+        inside.clear();
+        inside.extend(
+            view.objects.iter().map(|object| {
+                evaluate(view.expression(object), &|face| self.truth(negative, face))
+            }),
+        );
+    }
+
+    /// The region, given which of the leaf's objects one is in.
+    fn region(&self, view: &LeafView<'_>, inside: &[bool]) -> Region {
+        let solid = |(object, inside): (&LeafObject, &bool)| {
+            (*inside && !self.ranked[object.rank as usize].shell).then_some(object.rank + 1)
+        };
+        let first = view.objects.iter().zip(inside).find_map(solid);
+        let state = match (first, view.base) {
+            (None, base) => base,
+            (Some(rank), 0) => rank,
+            (Some(rank), base) => rank.min(base),
+        };
+        self.region_of_state(state)
+    }
+
+    pub(super) fn region_in(
+        &self,
+        line: &Line,
+        leaf: u32,
+        s: f64,
+        scratch: &mut Scratch,
+        counters: &mut Counters,
+    ) -> Region {
+        let view = self.leaves.get(leaf);
+        self.place(&view, line, s, scratch, counters, None);
+        let Scratch {
+            negative, inside, ..
+        } = scratch;
+        self.memberships(&view, negative, inside);
+        self.region(&view, inside)
+    }
+
+    /// The boundary at a group of crossings, if any that counts. `negative` is the state behind it.
+    fn interface(
+        &self,
+        view: &LeafView<'_>,
+        group: &[Event],
+        negative: &[bool],
+        before: &[bool],
+        after: &[bool],
+    ) -> Option<Interface> {
+        let (from, to) = (self.region(view, before), self.region(view, after));
+        let mut chosen: Option<(u8, usize)> = None;
+        for (index, object) in view.objects.iter().enumerate() {
+            if before[index] == after[index] {
+                continue;
+            }
+            let ranked = &self.ranked[object.rank as usize];
+            let class = if ranked.shell {
+                let counts = view.clip(object).is_none_or(|clip| {
+                    evaluate(clip, &|face| self.truth(negative, face))
+                        || evaluate(clip, &|face| self.truth_before(negative, group, face))
+                });
+                if !counts {
+                    continue;
+                }
+                3
+            } else if self.is_hidden(view, ranked.priority, before, after) {
+                continue;
+            } else if Some(ranked.object) == to.object() {
+                // What the line comes to see is the surface of what it enters.
+                0
+            } else if Some(ranked.object) == from.object() {
+                1
+            } else {
+                2
+            };
+            if chosen.is_none_or(|(best, _)| class < best) {
+                chosen = Some((class, index));
+            }
+        }
+        let (_, index) = chosen?;
+        let face = changed_face(
+            view.expression(&view.objects[index]),
+            &|face| self.truth_before(negative, group, face),
+            &|face| self.truth(negative, face),
+        )?;
+        Some(Interface {
+            s: group[0].s,
+            face: self.triangle_face(face, group),
+            entering: after[index],
+            from,
+            to,
+        })
+    }
+
+    /// Whether a solid of higher priority is on both sides.
+    fn is_hidden(
+        &self,
+        view: &LeafView<'_>,
+        priority: i32,
+        before: &[bool],
+        after: &[bool],
+    ) -> bool {
+        if !self.priorities_differ {
+            return false;
+        }
+        view.objects.iter().enumerate().any(|(index, object)| {
+            let ranked = &self.ranked[object.rank as usize];
+            before[index] && after[index] && !ranked.shell && ranked.priority > priority
+        })
+    }
+
+    fn truth_before(&self, negative: &[bool], group: &[Event], face: FaceId) -> bool {
+        let surface = self.faces[face.0 as usize].surface.0;
+        let crossings = group.iter().filter(|e| e.surface == surface).count();
+        self.truth(negative, face) ^ (crossings % 2 == 1)
+    }
+
+    /// A face of a mesh operand becomes that of the triangle which was crossed.
+    fn triangle_face(&self, face: FaceId, group: &[Event]) -> FaceId {
+        let surface = self.faces[face.0 as usize].surface.0;
+        let Some(mesh) = (surface as usize).checked_sub(self.surfaces.len()) else {
+            return face;
+        };
+        let triangle = group
+            .iter()
+            .find(|e| e.surface == surface)
+            .map_or(0, |e| e.triangle);
+        FaceId(self.meshes[mesh].first_face + triangle)
+    }
+}

@@ -1,0 +1,341 @@
+//! The world and its queries.
+
+use std::sync::{Arc, Mutex, PoisonError};
+
+use octray_geometry::FaceId;
+use octray_geometry::mesh::MeshError;
+use octray_math::{Aabb, DVec3};
+use octray_scene::{Scene, Shape};
+use octray_tree::{CellTreeStats, Criteria};
+use thiserror::Error;
+
+use crate::line::Line;
+use crate::sheets::{SheetHit, Sheets};
+use crate::solids::{Interface, Scratch, Solids};
+use crate::{Counters, Hit, RayQuery, Region};
+
+/// How the nearest surface is found. The answers are the same bits.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Accel {
+    /// Octrees.
+    #[default]
+    Auto,
+    /// Every surface is tested with every ray: the oracle.
+    Brute,
+}
+
+/// How to prepare a world.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct WorldConfig {
+    /// Octrees or brute force.
+    pub accel: Accel,
+    /// When to divide cells.
+    pub criteria: Criteria,
+}
+
+/// Why a scene cannot be made ready for rays.
+#[derive(Clone, Debug, PartialEq, Error)]
+pub enum WorldError {
+    /// A mesh operand has no inside.
+    #[error("object `{object}`: {error}")]
+    Mesh {
+        /// The object's name.
+        object: String,
+        /// What is wrong with the mesh.
+        error: MeshError,
+    },
+    /// Faces and triangles together outnumber their ids.
+    #[error("the scene has more than 2^30 faces and triangles")]
+    TooManyFaces,
+}
+
+/// A scene made ready for rays.
+#[derive(Debug)]
+pub struct World {
+    pub(crate) scene: Arc<Scene>,
+    pub(crate) solids: Solids,
+    pub(crate) sheets: Sheets,
+    /// Rays are moved to their closest approach to this point.
+    center: DVec3,
+    /// For each material whether no light passes it.
+    opaque: Vec<bool>,
+    scratch: ScratchPool,
+}
+
+/// What was prepared.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct WorldStats {
+    /// Objects of the scene.
+    pub objects: usize,
+    /// Distinct surfaces of solids.
+    pub surfaces: usize,
+    /// Faces that turned out to lie on another face's surface.
+    pub merged_surfaces: usize,
+    /// Faces of solids and triangles.
+    pub faces: usize,
+    /// Triangles of sheets.
+    pub triangles: usize,
+    /// The octree over the solids.
+    pub cells: Option<CellTreeStats>,
+}
+
+/// Working memory is handed from query to query instead of being made anew.
+#[derive(Debug, Default)]
+struct ScratchPool(Mutex<Vec<Scratch>>);
+
+impl ScratchPool {
+    fn with<R>(&self, work: impl FnOnce(&mut Scratch) -> R) -> R {
+        let lock = || self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        let mut scratch = lock().pop().unwrap_or_default();
+        let result = work(&mut scratch);
+        lock().push(scratch);
+        result
+    }
+}
+
+impl World {
+    /// Builds the accelerators, inside the current thread pool. The result does not depend on the
+    /// pool.
+    ///
+    /// # Errors
+    /// See [`WorldError`].
+    pub fn prepare(scene: Arc<Scene>, config: &WorldConfig) -> Result<Self, WorldError> {
+        let accelerate = config.accel == Accel::Auto;
+        if face_estimate(&scene) > 1 << 30 {
+            return Err(WorldError::TooManyFaces);
+        }
+        let solids = Solids::prepare(&scene, accelerate.then_some(&config.criteria))
+            .map_err(|(object, error)| WorldError::Mesh { object, error })?;
+        let sheets = Sheets::prepare(&scene, solids.face_count());
+        let bounds = scene.bounds();
+        let center = if bounds.is_empty() {
+            DVec3::ZERO
+        } else {
+            bounds.center()
+        };
+        let opaque = scene
+            .materials()
+            .iter()
+            .map(|m| !m.pigment.is_transparent())
+            .collect();
+        let scratch = ScratchPool::default();
+        Ok(Self {
+            scene,
+            solids,
+            sheets,
+            center,
+            opaque,
+            scratch,
+        })
+    }
+
+    /// The scene.
+    #[must_use]
+    pub fn scene(&self) -> &Scene {
+        &self.scene
+    }
+
+    /// Whether any material lets light through.
+    #[must_use]
+    pub fn has_transparency(&self) -> bool {
+        self.opaque.contains(&false)
+    }
+
+    /// A box around all bounded objects.
+    #[must_use]
+    pub fn bounds(&self) -> Aabb {
+        self.scene.bounds()
+    }
+
+    /// Figures about what was built.
+    #[must_use]
+    pub fn stats(&self) -> WorldStats {
+        WorldStats {
+            objects: self.scene.objects().len(),
+            surfaces: self.solids.surface_count(),
+            merged_surfaces: self.solids.merged_surfaces(),
+            faces: self.solids.face_count() as usize + self.sheets.triangle_count(),
+            triangles: self.sheets.triangle_count(),
+            cells: self.solids.tree_stats().cloned(),
+        }
+    }
+
+    /// The built structures as words: equal for equal scenes, whatever built them.
+    pub fn words(&self) -> impl Iterator<Item = u32> + '_ {
+        self.solids.words()
+    }
+
+    /// The nearest surface on each ray; `hits` is cleared and gets one hit per query.
+    ///
+    /// A ray that is not finite or has no direction meets nothing.
+    pub fn closest(&self, queries: &[RayQuery], hits: &mut Vec<Hit>, counters: &mut Counters) {
+        hits.clear();
+        counters.rays += queries.len() as u64;
+        self.scratch.with(|scratch| {
+            hits.extend(
+                queries
+                    .iter()
+                    .map(|query| self.closest_one(query, scratch, counters)),
+            );
+        });
+    }
+
+    fn closest_one(&self, query: &RayQuery, scratch: &mut Scratch, counters: &mut Counters) -> Hit {
+        let Some(line) = Line::new(query, self.center) else {
+            return Hit::MISS;
+        };
+        let mut best: Option<Interface> = None;
+        let nearer = |s: f64, face: FaceId, best: &Option<Interface>| {
+            s < line.end && best.is_none_or(|b| s < b.s || (s == b.s && face < b.face))
+        };
+        let limit_of = |best: &Option<Interface>| best.map_or(f64::INFINITY, |b| b.s);
+        self.solids
+            .sweep_line(&line, f64::INFINITY, scratch, counters, |found| {
+                if nearer(found.s, found.face, &best) {
+                    best = Some(*found);
+                }
+                limit_of(&best)
+            });
+        let mut sheet: Option<SheetHit> = None;
+        self.sheets
+            .visit_line(&line, limit_of(&best), counters, |found| {
+                let known = sheet.map_or(best, |hit| Some(Interface::of_sheet(&hit)));
+                if nearer(found.s, found.face, &known) {
+                    sheet = Some(*found);
+                }
+                sheet.map_or(limit_of(&best), |hit| hit.s)
+            });
+        if let Some(hit) = sheet {
+            // Which space a sheet stands in matters only where light bends or fades.
+            let region = if self.has_transparency() {
+                self.solids.region_at(&line, hit.s, scratch, counters)
+            } else {
+                Region::OUTSIDE
+            };
+            return Interface {
+                from: region,
+                to: region,
+                ..Interface::of_sheet(&hit)
+            }
+            .into_hit(&line);
+        }
+        best.map_or(Hit::MISS, |found| found.into_hit(&line))
+    }
+
+    /// Whether a surface that no light passes, of an object that casts shadows, lies on each ray;
+    /// `blocked` is cleared and gets one answer per query.
+    pub fn occluded(&self, queries: &[RayQuery], blocked: &mut Vec<bool>, counters: &mut Counters) {
+        blocked.clear();
+        counters.rays += queries.len() as u64;
+        self.scratch.with(|scratch| {
+            blocked.extend(
+                queries
+                    .iter()
+                    .map(|query| self.occluded_one(query, scratch, counters)),
+            );
+        });
+    }
+
+    fn occluded_one(
+        &self,
+        query: &RayQuery,
+        scratch: &mut Scratch,
+        counters: &mut Counters,
+    ) -> bool {
+        let Some(line) = Line::new(query, self.center) else {
+            return false;
+        };
+        let mut found = false;
+        let mut visit = |s: f64, face: FaceId| {
+            found |= s < line.end && self.blocks(face);
+            if found {
+                f64::NEG_INFINITY
+            } else {
+                f64::INFINITY
+            }
+        };
+        self.sheets
+            .visit_line(&line, f64::INFINITY, counters, |hit| visit(hit.s, hit.face));
+        if !found {
+            let mut visit = |s: f64, face: FaceId| {
+                found |= s < line.end && self.blocks(face);
+                if found {
+                    f64::NEG_INFINITY
+                } else {
+                    f64::INFINITY
+                }
+            };
+            self.solids
+                .sweep_line(&line, f64::INFINITY, scratch, counters, |i| {
+                    visit(i.s, i.face)
+                });
+        }
+        found
+    }
+
+    /// Whether a face stops light.
+    fn blocks(&self, face: FaceId) -> bool {
+        self.owner(face).is_some_and(|(object, material)| {
+            self.opaque[material.0 as usize]
+                && self.scene.objects()[object.0 as usize].casts_shadows
+        })
+    }
+
+    /// All boundaries on the ray, in order; with `whole_line` also those at `t <= 0`.
+    ///
+    /// `hits` is cleared first.
+    pub fn crossings(
+        &self,
+        query: &RayQuery,
+        whole_line: bool,
+        hits: &mut Vec<Hit>,
+        counters: &mut Counters,
+    ) {
+        hits.clear();
+        counters.rays += 1;
+        let Some(mut line) = Line::new(query, self.center) else {
+            return;
+        };
+        if whole_line {
+            line = line.whole();
+        }
+        let mut found: Vec<Interface> = Vec::new();
+        self.scratch.with(|scratch| {
+            self.solids
+                .sweep_line(&line, f64::INFINITY, scratch, counters, |interface| {
+                    found.push(*interface);
+                    f64::INFINITY
+                });
+            let first_sheet = found.len();
+            self.sheets
+                .visit_line(&line, f64::INFINITY, counters, |hit| {
+                    found.push(Interface::of_sheet(hit));
+                    f64::INFINITY
+                });
+            for sheet in &mut found[first_sheet..] {
+                let region = self.solids.region_at(&line, sheet.s, scratch, counters);
+                (sheet.from, sheet.to) = (region, region);
+            }
+        });
+        found.retain(|f| f.s < line.end);
+        found.sort_by(|a, b| a.s.total_cmp(&b.s).then(a.face.cmp(&b.face)));
+        // Cells overlap a little: what lies there was found twice.
+        found.dedup_by_key(|f| (f.s, f.face));
+        hits.extend(found.into_iter().map(|f| f.into_hit(&line)));
+    }
+
+    /// A line through the same space as the query's, for what needs another look at it.
+    pub(crate) fn line(&self, query: &RayQuery) -> Option<Line> {
+        Line::new(query, self.center)
+    }
+}
+
+/// An upper bound of the number of faces.
+fn face_estimate(scene: &Scene) -> u64 {
+    scene.objects().iter().fold(0, |sum: u64, object| {
+        sum.saturating_add(match &object.shape {
+            Shape::Solid(solid) => solid.faces(),
+            Shape::Sheet(sheet) => sheet.faces(),
+        })
+    })
+}
