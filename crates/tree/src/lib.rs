@@ -5,4 +5,4 @@
 
 pub mod cell_tree;
 
-pub use cell_tree::{Cell, CellTree, CellTreeStats, Criteria, Node, Subdivide};
+pub use cell_tree::{Cell, CellTree, CellTreeStats, Criteria, Node, Subdivide, WalkStack};

@@ -75,21 +75,21 @@ impl Code {
     pub fn literals(&self) -> usize {
         faces(&self.words).count()
     }
+}
 
-    /// The expression with every literal that `side_of` decides replaced by its value.
-    ///
-    /// # Errors
-    /// The constant, where nothing undecided is left.
-    pub fn reduced(
-        &self,
-        truth: &mut impl FnMut(FaceId) -> Option<bool>,
-    ) -> Result<Self, Constant> {
-        let mut writer = Writer::default();
-        match reduce(&self.words, 0, truth, &mut writer) {
-            Some(constant) => Err(constant),
-            None => Ok(writer.finish()),
-        }
-    }
+/// Appends to `out` the expression with every literal that `truth` decides replaced by its value;
+/// the constant, and nothing appended, where nothing undecided is left.
+pub fn reduce(
+    words: &[u32],
+    truth: &mut impl FnMut(FaceId) -> Option<bool>,
+    out: &mut Vec<u32>,
+) -> Option<Constant> {
+    let mut writer = Writer {
+        words: std::mem::take(out),
+    };
+    let constant = reduce_at(words, 0, truth, &mut writer);
+    *out = writer.words;
+    constant
 }
 
 /// Builds [`Code`] and keeps its rules: operations are spliced, collapsed and cut short on the way.
@@ -173,7 +173,7 @@ impl Writer {
     }
 }
 
-fn reduce(
+fn reduce_at(
     words: &[u32],
     at: usize,
     truth: &mut impl FnMut(FaceId) -> Option<bool>,
@@ -197,7 +197,7 @@ fn reduce(
     let mut open = writer.open(operation);
     for child in operands(words, at) {
         let start = writer.position();
-        let constant = reduce(words, child, truth, writer);
+        let constant = reduce_at(words, child, truth, writer);
         if writer.operand(&mut open, start, constant) {
             return Some(operation.absorbing());
         }
@@ -384,7 +384,14 @@ mod tests {
             let whole = constant.map_or(Ok(code), Err);
             prop_assert_eq!(value(&whole), tree.value(truth));
             let reduced = whole.and_then(|code| {
-                code.reduced(&mut |f| (known >> f.0 & 1 == 1).then_some(truth >> f.0 & 1 == 1))
+                let mut words = Vec::new();
+                let mut known = |f: FaceId| {
+                    (known >> f.0 & 1 == 1).then_some(truth >> f.0 & 1 == 1)
+                };
+                match reduce(code.words(), &mut known, &mut words) {
+                    Some(constant) => Err(constant),
+                    None => Ok(Code { words }),
+                }
             });
             prop_assert_eq!(value(&reduced), tree.value(truth));
             if let Ok(code) = reduced {

@@ -9,5 +9,5 @@
 mod code;
 mod lower;
 
-pub use code::{Code, Constant, changed_face, evaluate, faces, truth_on};
+pub use code::{Code, Constant, changed_face, evaluate, faces, reduce, truth_on};
 pub use lower::{Face, Lowered, Lowering, MeshOperand};

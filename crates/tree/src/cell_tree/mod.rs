@@ -11,6 +11,7 @@ mod walk;
 use octray_math::{Aabb, CellKey, DVec3};
 
 pub use build::{Criteria, Subdivide};
+pub use walk::WalkStack;
 
 /// What a cell is.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -118,7 +118,7 @@ proptest! {
         let mut last = f64::NEG_INFINITY;
         let margin = tree.root().size().x * CellTree::CONTENT_MARGIN;
         let mut ordered = true;
-        tree.walk(&ray, Interval::ALL, |leaf, span| {
+        tree.walk(&ray, Interval::ALL, &mut WalkStack::default(), |leaf, span| {
             // Grown cells overlap by a margin.
             ordered &= span.start >= last - 2.0 * margin / direction.abs().max_element() * 2.0;
             last = last.max(span.start);
@@ -139,7 +139,7 @@ proptest! {
         let ray = Ray::new(origin, -origin + DVec3::splat(1e-3));
         let mut limit = f64::INFINITY;
         let mut late = false;
-        tree.walk(&ray, Interval::ALL, |_, span| {
+        tree.walk(&ray, Interval::ALL, &mut WalkStack::default(), |_, span| {
             late |= span.start > limit;
             limit = span.end;
             limit

@@ -1,19 +1,21 @@
 //! The ordered traversal: cells front to back, each with the part of the line inside it.
 
-use octray_math::{DVec3, Interval, MAX_DEPTH, Ray};
+use octray_math::{DVec3, Interval, Ray};
 
 use super::{CellTree, Node};
 
-/// A cell on the way: seven siblings may wait on every level.
-#[derive(Clone, Copy)]
+/// The cells that wait to be visited: working memory, kept from walk to walk.
+#[derive(Clone, Debug, Default)]
+pub struct WalkStack(Vec<Waiting>);
+
+/// A cell on the way: at most seven siblings wait on every level.
+#[derive(Clone, Copy, Debug)]
 struct Waiting {
     node: u32,
     min: DVec3,
     size: f64,
     span: Interval,
 }
-
-const STACK: usize = 7 * MAX_DEPTH as usize + 8;
 
 /// The line as the slab test wants it.
 struct Slabs {
@@ -54,6 +56,7 @@ impl CellTree {
         &self,
         ray: &Ray,
         within: Interval,
+        stack: &mut WalkStack,
         mut visit: impl FnMut(u32, Interval) -> f64,
     ) -> u64 {
         let d = ray.direction;
@@ -72,16 +75,15 @@ impl CellTree {
         if span.is_empty() {
             return 0;
         }
-        let mut stack = [Waiting {
+        let WalkStack(stack) = stack;
+        stack.clear();
+        stack.push(Waiting {
             node: self.root_node,
             min: self.root.min,
             size: self.root.size().x,
             span,
-        }; STACK];
-        let mut height = 1;
-        while height > 0 {
-            height -= 1;
-            let cell = stack[height];
+        });
+        while let Some(cell) = stack.pop() {
             if cell.span.start > limit {
                 continue;
             }
@@ -107,13 +109,12 @@ impl CellTree {
                         let min = cell.min + corner * size;
                         let span = slabs.clip(min, size, cell.span);
                         if !span.is_empty() {
-                            stack[height] = Waiting {
+                            stack.push(Waiting {
                                 node,
                                 min,
                                 size,
                                 span,
-                            };
-                            height += 1;
+                            });
                         }
                     }
                 }

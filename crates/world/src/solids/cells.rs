@@ -1,7 +1,9 @@
 //! What matters in a cell: every object's expression, reduced to the faces that pass through.
 
+use std::ops::Range;
+
 use octray_geometry::FaceId;
-use octray_geometry::csg::{Code, Constant, Face, faces, truth_on};
+use octray_geometry::csg::{self, Constant, Face, truth_on};
 use octray_geometry::mesh::MeshSolid;
 use octray_geometry::surface::{Quadric, Side, Surface};
 use octray_math::Aabb;
@@ -9,11 +11,15 @@ use octray_tree::{Cell, Subdivide};
 
 use super::{MeshSurface, Ranked};
 
-/// The contents of a cell.
+/// The contents of a cell, all expressions in one array.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Content {
     /// Objects whose boundary may pass through, by rank.
     pub(super) objects: Vec<Active>,
+    /// Their expressions.
+    pub(super) words: Vec<u32>,
+    /// The surfaces of the expressions' faces, increasing.
+    pub(super) surfaces: Vec<u32>,
     /// 1 + the lowest rank among the solids that fill the cell, 0 for none.
     pub(super) base: u32,
 }
@@ -22,9 +28,71 @@ pub(super) struct Content {
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Active {
     pub(super) rank: u32,
-    pub(super) expression: Code,
-    /// The part of the boundary that counts; `None`: all of it.
-    pub(super) clip: Option<Code>,
+    expression: Range<usize>,
+    /// The part of the boundary that counts; empty: all of it.
+    clip: Range<usize>,
+}
+
+impl Content {
+    pub(super) fn expression(&self, object: &Active) -> &[u32] {
+        &self.words[object.expression.clone()]
+    }
+
+    /// Empty where all of the boundary counts.
+    pub(super) fn clip(&self, object: &Active) -> &[u32] {
+        &self.words[object.clip.clone()]
+    }
+
+    /// Adds an object as far as `truth` leaves it undecided. `expression` and `clip` are words, no
+    /// clip meaning all of the boundary.
+    pub(super) fn add(
+        &mut self,
+        rank: u32,
+        is_shell: bool,
+        expression: &[u32],
+        clip: &[u32],
+        truth: &mut impl FnMut(FaceId) -> Option<bool>,
+    ) {
+        let start = self.words.len();
+        match csg::reduce(expression, truth, &mut self.words) {
+            Some(Constant::True) if !is_shell => return self.fill(rank),
+            Some(_) => return,
+            None => {}
+        }
+        let middle = self.words.len();
+        if !clip.is_empty() && csg::reduce(clip, truth, &mut self.words) == Some(Constant::False) {
+            self.words.truncate(start);
+            return;
+        }
+        let end = self.words.len();
+        self.objects.push(Active {
+            rank,
+            expression: start..middle,
+            clip: middle..end,
+        });
+    }
+
+    /// Notes that the solid of this rank fills the cell.
+    pub(super) fn fill(&mut self, rank: u32) {
+        if self.base == 0 || rank + 1 < self.base {
+            self.base = rank + 1;
+        }
+    }
+
+    /// Lists the surfaces, once all objects are there.
+    pub(super) fn finish(&mut self, faces: &[Face]) {
+        let surface = |face: FaceId| faces[face.0 as usize].surface.0;
+        self.surfaces.clear();
+        for object in &self.objects {
+            let words = [object.expression.clone(), object.clip.clone()];
+            let own = words
+                .into_iter()
+                .flat_map(|range| csg::faces(&self.words[range]));
+            self.surfaces.extend(own.map(surface));
+        }
+        self.surfaces.sort_unstable();
+        self.surfaces.dedup();
+    }
 }
 
 /// Restricts contents to cells.
@@ -45,22 +113,6 @@ impl Cells<'_> {
 
     fn mesh(&self, surface: u32) -> &MeshSolid {
         &self.meshes[surface as usize - self.surfaces.len()].solid
-    }
-
-    /// The faces' surfaces, each once.
-    fn surfaces_of(&self, content: &Content) -> Vec<u32> {
-        let mut all: Vec<u32> = content
-            .objects
-            .iter()
-            .flat_map(|o| {
-                let clip = o.clip.iter().flat_map(|clip| faces(clip.words()));
-                faces(o.expression.words()).chain(clip)
-            })
-            .map(|face| self.faces[face.0 as usize].surface.0)
-            .collect();
-        all.sort_unstable();
-        all.dedup();
-        all
     }
 
     /// The work of crossing a surface, in planes.
@@ -85,39 +137,24 @@ impl Subdivide for Cells<'_> {
     type Content = Content;
 
     fn restrict(&self, parent: &Content, cell: &Aabb) -> Content {
-        let surfaces = self.surfaces_of(parent);
-        let sides: Vec<Side> = surfaces.iter().map(|&s| self.classify(s, cell)).collect();
+        let sides: Vec<Side> = parent
+            .surfaces
+            .iter()
+            .map(|&s| self.classify(s, cell))
+            .collect();
         let mut truth = |face: FaceId| {
             let face = &self.faces[face.0 as usize];
-            let at = surfaces.binary_search(&face.surface.0).ok()?;
+            let at = parent.surfaces.binary_search(&face.surface.0).ok()?;
             truth_on(sides[at], face.inside_is_positive)
         };
         let mut content = Content {
-            objects: Vec::new(),
             base: parent.base,
+            ..Content::default()
         };
-        for active in &parent.objects {
-            let shell = self.ranked[active.rank as usize].shell;
-            let expression = match active.expression.reduced(&mut truth) {
-                Ok(expression) => expression,
-                Err(Constant::True) if !shell => {
-                    if content.base == 0 || active.rank + 1 < content.base {
-                        content.base = active.rank + 1;
-                    }
-                    continue;
-                }
-                Err(_) => continue,
-            };
-            let clip = match active.clip.as_ref().map(|clip| clip.reduced(&mut truth)) {
-                None | Some(Err(Constant::True)) => None,
-                Some(Err(Constant::False)) => continue,
-                Some(Ok(clip)) => Some(clip),
-            };
-            content.objects.push(Active {
-                rank: active.rank,
-                expression,
-                clip,
-            });
+        for object in &parent.objects {
+            let is_shell = self.ranked[object.rank as usize].shell;
+            let (expression, clip) = (parent.expression(object), parent.clip(object));
+            content.add(object.rank, is_shell, expression, clip, &mut truth);
         }
         // What a higher priority fills hides the boundaries of all that have a lower one.
         if let Some(base) = content.base.checked_sub(1) {
@@ -125,8 +162,9 @@ impl Subdivide for Cells<'_> {
                 let object = &self.ranked[rank as usize];
                 !object.shell && object.priority < self.ranked[base as usize].priority
             };
-            content.objects.retain(|active| !hides(active.rank));
+            content.objects.retain(|object| !hides(object.rank));
         }
+        content.finish(self.faces);
         content
     }
 
@@ -134,18 +172,13 @@ impl Subdivide for Cells<'_> {
         if content.objects.is_empty() {
             return Cell::Empty(content.base);
         }
-        let cost = self
-            .surfaces_of(content)
-            .into_iter()
-            .map(|s| self.cost(s))
-            .sum();
-        Cell::Occupied { cost }
+        Cell::Occupied {
+            cost: content.surfaces.iter().map(|&s| self.cost(s)).sum(),
+        }
     }
 
     fn bytes(&self, content: &Content) -> u64 {
-        let words = |code: &Code| 4 * code.words().len() as u64;
-        let object = |o: &Active| 20 + words(&o.expression) + o.clip.as_ref().map_or(0, words);
-        20 + content.objects.iter().map(object).sum::<u64>()
-            + 4 * self.surfaces_of(content).len() as u64
+        let words = 5 + 5 * content.objects.len() + content.words.len() + content.surfaces.len();
+        4 * words as u64
     }
 }

@@ -3,9 +3,6 @@
 use std::collections::HashMap;
 use std::ops::Range;
 
-use octray_geometry::csg::Face;
-use octray_geometry::csg::faces;
-
 use super::cells::Content;
 
 /// The contents of all leaves.
@@ -64,35 +61,28 @@ const fn range(ends: [u32; 2]) -> Range<usize> {
 
 impl Leaves {
     /// From the contents of the cells, in the order of their indices.
-    pub(super) fn new(contents: &[Content], all_faces: &[Face]) -> Self {
+    pub(super) fn new(contents: &[Content]) -> Self {
         let mut leaves = Self::default();
         let mut seen: HashMap<Vec<u32>, [u32; 2]> = HashMap::new();
         for content in contents {
             let first = [leaves.surfaces.len() as u32, leaves.objects.len() as u32];
-            let mut surfaces = Vec::new();
-            for active in &content.objects {
+            for object in &content.objects {
                 let mut store = |words: &[u32]| {
-                    surfaces.extend(faces(words).map(|f| all_faces[f.0 as usize].surface.0));
                     *seen.entry(words.to_vec()).or_insert_with(|| {
                         let start = leaves.words.len() as u32;
                         leaves.words.extend_from_slice(words);
                         [start, leaves.words.len() as u32]
                     })
                 };
-                let expression = store(active.expression.words());
-                let clip = active
-                    .clip
-                    .as_ref()
-                    .map_or([0, 0], |clip| store(clip.words()));
+                let expression = store(content.expression(object));
+                let clip = store(content.clip(object));
                 leaves.objects.push(LeafObject {
-                    rank: active.rank,
+                    rank: object.rank,
                     expression,
                     clip,
                 });
             }
-            surfaces.sort_unstable();
-            surfaces.dedup();
-            leaves.surfaces.extend(surfaces);
+            leaves.surfaces.extend_from_slice(&content.surfaces);
             leaves.leaves.push(Leaf {
                 surfaces: [first[0], leaves.surfaces.len() as u32],
                 objects: [first[1], leaves.objects.len() as u32],

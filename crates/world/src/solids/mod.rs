@@ -94,10 +94,12 @@ impl Solids {
         let within = Interval::new(span.start, span.end.min(limit));
         let mut cells = 0;
         if !within.is_empty() {
-            cells = tree.walk(&line.ray, within, |leaf, part| {
+            let mut stack = std::mem::take(&mut scratch.stack);
+            cells = tree.walk(&line.ray, within, &mut stack, |leaf, part| {
                 limit = self.sweep(line, leaf, part, limit, scratch, counters, &mut visit);
                 limit
             });
+            scratch.stack = stack;
         }
         counters.cells += cells;
         let after = Interval::new(span.end, all.end);

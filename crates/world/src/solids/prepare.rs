@@ -2,14 +2,14 @@
 
 use std::cmp::Ordering;
 
-use octray_geometry::csg::{Code, Constant, Face, Lowering, MeshOperand};
+use octray_geometry::csg::{Constant, Face, Lowered, Lowering, MeshOperand};
 use octray_geometry::mesh::{MeshError, MeshSolid};
 use octray_geometry::{FaceId, MaterialId, Sheet, Solid};
 use octray_math::Aabb;
 use octray_scene::{Object, ObjectId, Scene, Shape};
 use octray_tree::{CellTree, Criteria, cell_tree};
 
-use super::cells::{Active, Cells, Content};
+use super::cells::{Cells, Content};
 use super::{Leaves, MeshSurface, Ranked, Solids};
 
 /// An object before its rank is known.
@@ -103,8 +103,10 @@ impl Solids {
                 add(&mut unbounded, rank, shell, &boundary, clip.as_ref());
             }
         }
-        root.objects.sort_by_key(|active| active.rank);
-        unbounded.objects.sort_by_key(|active| active.rank);
+        for content in [&mut root, &mut unbounded] {
+            content.objects.sort_by_key(|object| object.rank);
+            content.finish(&faces);
+        }
 
         let bounds = candidates
             .iter()
@@ -131,7 +133,7 @@ impl Solids {
             contents.push(outer);
             contents.len() as u32 - 1
         });
-        let leaves = Leaves::new(&contents, &faces);
+        let leaves = Leaves::new(&contents);
         let priorities_differ = ranked
             .windows(2)
             .any(|pair| pair[0].priority != pair[1].priority);
@@ -208,33 +210,19 @@ fn scene_size(candidates: &[Candidate<'_>]) -> f64 {
     if largest > 0.0 { largest } else { 1.0 }
 }
 
-fn add(
-    content: &mut Content,
-    rank: u32,
-    shell: bool,
-    boundary: &Result<Code, Constant>,
-    clip: Option<&Result<Code, Constant>>,
-) {
+/// Adds an object with nothing decided but what is constant by itself.
+fn add(content: &mut Content, rank: u32, shell: bool, boundary: &Lowered, clip: Option<&Lowered>) {
     let expression = match boundary {
-        Ok(code) => code.clone(),
-        Err(Constant::True) if !shell => {
-            if content.base == 0 || rank + 1 < content.base {
-                content.base = rank + 1;
-            }
-            return;
-        }
+        Ok(code) => code.words(),
+        Err(Constant::True) if !shell => return content.fill(rank),
         Err(_) => return,
     };
     let clip = match clip {
-        None | Some(Err(Constant::True)) => None,
+        None | Some(Err(Constant::True)) => &[],
         Some(Err(Constant::False)) => return,
-        Some(Ok(code)) => Some(code.clone()),
+        Some(Ok(code)) => code.words(),
     };
-    content.objects.push(Active {
-        rank,
-        expression,
-        clip,
-    });
+    content.add(rank, shell, expression, clip, &mut |_| None);
 }
 
 fn mesh_surfaces(

@@ -8,6 +8,7 @@ use super::sweep::Event;
 use crate::Counters;
 use crate::line::Line;
 use octray_geometry::FaceId;
+use octray_tree::WalkStack;
 
 /// A crossing of a surface, in the line's parameter.
 #[derive(Clone, Copy, Debug)]
@@ -55,6 +56,7 @@ pub(crate) struct Scratch {
     pub(super) events: Vec<Event>,
     pub(super) inside: Vec<bool>,
     pub(super) inside_after: Vec<bool>,
+    pub(super) stack: WalkStack,
     mesh_roots: Vec<octray_geometry::mesh::MeshCrossing>,
 }
 
