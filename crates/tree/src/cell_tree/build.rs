@@ -35,7 +35,8 @@ pub struct Criteria {
     pub max_depth: u32,
     /// Division stops before nodes and contents take more bytes.
     pub memory_limit: u64,
-    /// Cost of entering a cell, in units of one plane intersected with a line.
+    /// Cost of entering a cell, in units of one plane intersected with a line. The default was
+    /// measured: a ray is as fast as with 1.5, the tree a tenth of the size.
     pub visit_cost: f64,
 }
 
@@ -44,7 +45,7 @@ impl Default for Criteria {
         Self {
             max_depth: 16,
             memory_limit: 4 << 30,
-            visit_cost: 1.5,
+            visit_cost: 4.0,
         }
     }
 }
