@@ -1,1 +1,35 @@
-//! render
+//! From a [`World`](octray_world::World) to a picture.
+//!
+//! [`render`] schedules tiles over the threads of the current rayon pool; in each, primary rays
+//! and all that they lead to wait in bounded queues, go through the world in slices and are shaded
+//! by an [`Integrator`]. Light is added up in a [`Film`] of integers, so the picture has the same
+//! bits for any number of threads. [`Image`] is the developed result; the caller writes files.
+
+pub mod bsdf;
+mod camera;
+mod config;
+mod driver;
+mod film;
+mod image;
+mod integrator;
+mod light;
+mod path;
+mod sampler;
+mod stats;
+mod tile;
+mod tile_renderer;
+
+pub use camera::PrimaryRays;
+pub use config::{Crop, MAX_EDGE, MAX_GENERATIONS, MAX_SPP, Plan, RenderConfig, RenderError};
+pub use driver::{Observer, RenderJob, Rendering, render};
+pub use film::{Film, MAX_CONTRIBUTION, PixelSums};
+pub use image::{
+    Image, ImageError, develop, develop_color, encode_exr, encode_png, neutral, scene_to_linear,
+    srgb_decode, srgb_encode,
+};
+pub use integrator::{Integrator, MAX_INTERFACES, ShadowTracer, Whitted, medium_of, transmission};
+pub use light::{Illumination, illuminate};
+pub use path::{PathState, Queues, RayKind, ShadowState, to_single, to_vector};
+pub use sampler::{pixel_position, sample_key};
+pub use stats::{RayCounts, RenderStats};
+pub use tile::{OfPixel, Tile, TileFilm};

@@ -24,7 +24,9 @@ pub enum LightKind {
         position: DVec3,
     },
     /// Shines from a point in a cone: fully within `inner`, not at all beyond `outer`, between
-    /// them by the cubic `s^2 (3 - 2 s)` of the angle; all of it times `cos^tightness`.
+    /// them by the cubic `s^2 (3 - 2 s)`, where `s` goes from 0 to 1 with the cosine of the angle
+    /// to the axis: `s = (cos - cos outer) / (cos inner - cos outer)`, as in POV-Ray. All of it
+    /// times `max(cos, 0)^tightness`; a tightness of 0 leaves the cone as it is beyond 90 degrees.
     Spot {
         /// Where it is.
         position: DVec3,
@@ -44,7 +46,7 @@ pub enum LightKind {
     },
 }
 
-/// How a light weakens with the distance `r`.
+/// How a light weakens with the distance `r`; directional light never does.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Falloff {
     /// Not at all (the usual in Whitted's model, NFF and POV-Ray).

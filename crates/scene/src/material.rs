@@ -171,6 +171,23 @@ fn color_at(map: &[ColorStop], s: f64) -> Color {
 }
 
 /// How light leaves the surface.
+///
+/// A surface is shaded on the side that is seen, its normal turned to the viewer. With the
+/// pigment's colour `C`, its opacity `o = 1 - filter - transmit`, and for every lamp that is seen
+/// from the surface its light `L`, the unit directions `N` (normal), `V` (viewer), `l` (lamp),
+/// `R` (mirrored viewer) and `H` (half way between `V` and `l`), the light is
+///
+/// - `o C (ambient * ambient light of the scene + emission)`,
+/// - per lamp with `N.l > 0`: `L o C diffuse (N.l)^brilliance`,
+/// - per lamp with `N.l > 0`: `L M (phong (R.l)^phong_size + specular (N.H)^(1 / roughness))`,
+///   where `M = 1 + metallic (1 - F) (C - 1)` and `F` is POV-Ray's empirical reflectivity of
+///   metals at the angle between `N` and `l`,
+/// - what the mirrored ray sees, times the reflection,
+/// - what the transmitted ray sees, times [`Color::transmittance`]. At total internal reflection
+///   nothing is transmitted, and the mirrored ray counts fully (1, instead of the reflection).
+///
+/// Light on its way to a lit surface passes transparent surfaces unbent, times the transmittance
+/// of each, whether or not they conserve energy, and times what their insides leave.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Finish {
     /// Light that is there without a lamp, times the pigment, times the scene's ambient light.
@@ -193,7 +210,8 @@ pub struct Finish {
     pub metallic: f64,
     /// The mirror term.
     pub reflection: Reflection,
-    /// Whether what is reflected is missing from what is transmitted.
+    /// Whether what is reflected is missing from what is transmitted: the transmittance is
+    /// multiplied by 1 - reflection.
     pub conserve_energy: bool,
 }
 
@@ -215,7 +233,8 @@ impl Default for Finish {
     }
 }
 
-/// The mirror term: from `min` (seen head on) to `max` (seen grazing).
+/// The mirror term: from `min` (seen head on) to `max` (seen grazing), times
+/// `1 + metallic (1 - F) (C - 1)` as for highlights, `F` at the angle between normal and viewer.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Reflection {
     /// Share of light mirrored at normal incidence.

@@ -1,0 +1,201 @@
+//! The schedule of a picture: which pixels when, on which thread. It does not show in the result.
+
+use std::sync::{Mutex, PoisonError};
+
+use octray_scene::{Camera, Encoding};
+use octray_world::World;
+use rayon::prelude::*;
+
+use crate::image::Image;
+use crate::integrator::Whitted;
+use crate::tile::Tile;
+use crate::tile_renderer::{TileRenderer, TileResult};
+use crate::{Film, Plan, PrimaryRays, RenderConfig, RenderError, RenderStats};
+
+/// Pixels along the edge of a tile of the last pass, a multiple of 2.
+const TILE_EDGE: u32 = 32;
+/// Pixels, of those that a coarse pass renders, along the edge of its tiles.
+const COARSE_TILE_EDGE: u32 = 16;
+/// Distances of the pixels in the passes of a progressive rendering.
+const PASSES: [u32; 4] = [8, 4, 2, 1];
+
+/// Who watches a rendering. Both functions are called from the threads that render and should
+/// be quick.
+pub trait Observer: Sync {
+    /// `done` of `total` pixels are finished. Called by one thread at a time; never decreases.
+    fn progress(&self, done: u64, total: u64) {
+        let _ = (done, total);
+    }
+
+    /// Whether to stop as soon as possible.
+    fn cancelled(&self) -> bool {
+        false
+    }
+}
+
+/// Nobody watches.
+impl Observer for () {}
+
+/// A picture being made, pass by pass.
+#[derive(Debug)]
+pub struct RenderJob<'a> {
+    world: &'a World,
+    plan: Plan,
+    rays: PrimaryRays,
+    film: Film,
+    stats: RenderStats,
+    done: u64,
+    passes_left: &'static [u32],
+    cancelled: bool,
+}
+
+/// A picture that is finished, or as far as it came before it was cancelled.
+#[derive(Clone, Debug)]
+pub struct Rendering {
+    /// The light, and which pixels have it.
+    pub film: Film,
+    /// What it cost.
+    pub stats: RenderStats,
+    /// What was decided before it began.
+    pub plan: Plan,
+    /// What the film's values mean.
+    pub encoding: Encoding,
+}
+
+/// Renders a picture in the current rayon pool, seen by `camera`, else by the scene's.
+///
+/// If the observer cancels, the result has the pixels that were finished until then.
+///
+/// # Errors
+/// There is no camera, or a number of the configuration is out of its range.
+pub fn render(
+    world: &World,
+    camera: Option<&Camera>,
+    config: &RenderConfig,
+    observer: &dyn Observer,
+) -> Result<Rendering, RenderError> {
+    let mut job = RenderJob::new(world, camera, config)?;
+    while job.run_pass(observer) {}
+    Ok(job.finish())
+}
+
+impl<'a> RenderJob<'a> {
+    /// Prepares a picture seen by `camera`, else by the scene's.
+    ///
+    /// # Errors
+    /// There is no camera, or a number of the configuration is out of its range.
+    pub fn new(
+        world: &'a World,
+        camera: Option<&Camera>,
+        config: &RenderConfig,
+    ) -> Result<Self, RenderError> {
+        let scene = world.scene();
+        let plan = config.plan(scene.settings())?;
+        let camera = camera.or(scene.camera()).ok_or(RenderError::NoCamera)?;
+        let rays = PrimaryRays::new(camera, plan.size)?;
+        Ok(Self {
+            world,
+            plan,
+            rays,
+            film: Film::new(plan.crop, plan.spp),
+            stats: RenderStats::default(),
+            done: 0,
+            passes_left: if plan.progressive {
+                &PASSES
+            } else {
+                &PASSES[PASSES.len() - 1..]
+            },
+            cancelled: false,
+        })
+    }
+
+    /// Renders the next pass; returns whether there is another one. Without
+    /// [`RenderConfig::progressive`] there is only one.
+    pub fn run_pass(&mut self, observer: &dyn Observer) -> bool {
+        let Some((stride, later)) = self.passes_left.split_first() else {
+            return false;
+        };
+        let refines = self.plan.progressive && *stride != PASSES[0];
+        self.passes_left = later;
+        let edge = if *stride == 1 {
+            TILE_EDGE
+        } else {
+            COARSE_TILE_EDGE
+        };
+        let crop = self.plan.crop;
+        let tiles = Tile::cover((crop.width, crop.height), edge, *stride, refines);
+        let (world, plan, rays) = (self.world, &self.plan, &self.rays);
+        let integrator = Whitted::new(world, plan);
+        let total = u64::from(crop.width) * u64::from(crop.height);
+        let shared = Mutex::new((&mut self.film, &mut self.stats, &mut self.done));
+        tiles.par_iter().for_each_init(
+            || TileRenderer::new(world, &integrator, rays, plan, observer),
+            |renderer, tile| {
+                if observer.cancelled() {
+                    return;
+                }
+                let result = renderer.render(tile);
+                let mut shared = shared.lock().unwrap_or_else(PoisonError::into_inner);
+                let (film, stats, done) = &mut *shared;
+                **done += take(film, tile, &result);
+                **stats += result.stats;
+                observer.progress(**done, total);
+            },
+        );
+        self.cancelled |= observer.cancelled();
+        !(self.cancelled || self.passes_left.is_empty())
+    }
+
+    /// The picture so far; missing pixels show the nearest coarser one.
+    #[must_use]
+    pub fn preview(&self) -> Image {
+        Image::coarse_from_film(&self.film, self.world.scene().settings().encoding)
+    }
+
+    /// The light so far.
+    #[must_use]
+    pub const fn film(&self) -> &Film {
+        &self.film
+    }
+
+    /// Ends the job, finished or not.
+    #[must_use]
+    pub fn finish(self) -> Rendering {
+        Rendering {
+            film: self.film,
+            stats: self.stats,
+            plan: self.plan,
+            encoding: self.world.scene().settings().encoding,
+        }
+    }
+}
+
+/// Moves the finished pixels of a tile to the film; returns how many there were.
+fn take(film: &mut Film, tile: &Tile, result: &TileResult) -> u64 {
+    for pixel in tile.pixels().take(result.finished) {
+        film.finish_pixel(pixel, result.film.sums(pixel));
+    }
+    result.finished as u64
+}
+
+impl Rendering {
+    /// Whether every pixel is finished.
+    #[must_use]
+    pub fn is_complete(&self) -> bool {
+        let crop = self.plan.crop;
+        self.film.complete_pixels() == u64::from(crop.width) * u64::from(crop.height)
+    }
+
+    /// The picture in linear light; unfinished pixels are black.
+    #[must_use]
+    pub fn image(&self) -> Image {
+        Image::from_film(&self.film, self.encoding)
+    }
+
+    /// The picture in linear light; unfinished pixels of a progressive rendering show the
+    /// nearest coarser one.
+    #[must_use]
+    pub fn coarse_image(&self) -> Image {
+        Image::coarse_from_film(&self.film, self.encoding)
+    }
+}

@@ -1,0 +1,76 @@
+//! Light to display values.
+
+use octray_math::DVec3;
+use octray_scene::View;
+
+use super::{Image, neutral, srgb_encode};
+
+/// Red, green and blue bytes, in rows from the top.
+///
+/// A channel is clipped to `[0, 1]`, multiplied by 255 and rounded to the nearest integer,
+/// halves upwards; NaN becomes 0.
+#[must_use]
+pub fn develop(image: &Image, view: View) -> Vec<u8> {
+    image
+        .pixels()
+        .iter()
+        .flat_map(|pixel| {
+            let light = DVec3::from_array(pixel.map(f64::from));
+            develop_color(light, view).to_array().map(to_byte)
+        })
+        .collect()
+}
+
+/// One colour in linear light to display values, not clipped.
+#[must_use]
+pub fn develop_color(light: DVec3, view: View) -> DVec3 {
+    let encoded = |light: DVec3| DVec3::from_array(light.to_array().map(srgb_encode));
+    match view {
+        View::Raw => light,
+        View::Standard => encoded(light),
+        View::Neutral => encoded(neutral(light.max(DVec3::ZERO))),
+    }
+}
+
+fn to_byte(value: f64) -> u8 {
+    (value.clamp(0.0, 1.0) * 255.0 + 0.5) as u8
+}
+
+#[cfg(test)]
+mod tests {
+    use octray_scene::Encoding;
+
+    use super::super::scene_to_linear;
+    use super::*;
+
+    fn developed(rgb: [f64; 3], view: View) -> Vec<u8> {
+        let image = Image::new(1, 1, vec![rgb.map(|c| c as f32)]).expect("one pixel");
+        develop(&image, view)
+    }
+
+    #[test]
+    fn bytes_are_rounded_and_clipped() {
+        let rgb = [0.5, 1.7, -0.3];
+        assert_eq!(developed(rgb, View::Raw), [128, 255, 0]);
+        // 0.5 encoded is 0.735357: 187.5 rounds up to 188.
+        assert_eq!(developed(rgb, View::Standard), [188, 255, 0]);
+        assert_eq!(developed([f64::NAN; 3], View::Standard), [0, 0, 0]);
+        assert_eq!(developed([f64::INFINITY; 3], View::Raw), [255, 255, 255]);
+    }
+
+    #[test]
+    fn srgb_scenes_come_out_as_their_values_in_the_standard_view() {
+        for byte in 0..=255u8 {
+            let value = DVec3::splat(f64::from(byte) / 255.0);
+            let light = scene_to_linear(value, Encoding::Srgb);
+            assert_eq!(developed(light.to_array(), View::Standard), [byte; 3]);
+        }
+    }
+
+    #[test]
+    fn neutral_is_the_tone_mapper_and_then_the_curve() {
+        let light = DVec3::new(3.0, 0.4, 0.2);
+        let expected = neutral(light).to_array().map(srgb_encode);
+        assert_eq!(develop_color(light, View::Neutral).to_array(), expected);
+    }
+}
