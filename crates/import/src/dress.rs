@@ -40,7 +40,11 @@ pub fn view_all(bounds: &Aabb, up: DVec3) -> Option<Camera> {
 /// Unit directions to the scene's front and to the right of someone who looks at the front.
 fn horizontal_axes(up: DVec3) -> (DVec3, DVec3) {
     let up = up.normalize_or(DVec3::Z);
-    let front = if up.z.abs() > 0.7 { DVec3::NEG_Y } else { DVec3::Z };
+    let front = if up.z.abs() > 0.7 {
+        DVec3::NEG_Y
+    } else {
+        DVec3::Z
+    };
     let right = up.cross(front).normalize_or(DVec3::X);
     (right.cross(up), right)
 }
@@ -50,7 +54,11 @@ fn horizontal_axes(up: DVec3) -> (DVec3, DVec3) {
 #[must_use]
 pub fn dress(scene: Scene) -> Scene {
     let scene = add_camera(scene);
-    let Some(camera) = scene.camera().copied().filter(|_| scene.lights().is_empty()) else {
+    let Some(camera) = scene
+        .camera()
+        .copied()
+        .filter(|_| scene.lights().is_empty())
+    else {
         return scene;
     };
     let up = scene.settings().up;
@@ -92,9 +100,21 @@ fn add_lights(builder: &mut SceneBuilder, camera: &Camera) {
         }
     };
     // From the left above, warm; from the right, bluish and weak; from behind, along the edges.
-    add(-right * 0.75 + up * 0.9 - forward, DVec3::new(1.0, 0.96, 0.9), true);
-    add(right + up * 0.15 - forward * 0.7, DVec3::new(0.22, 0.25, 0.3), false);
-    add(right * 0.4 + up * 0.6 + forward, DVec3::new(0.35, 0.37, 0.4), true);
+    add(
+        -right * 0.75 + up * 0.9 - forward,
+        DVec3::new(1.0, 0.96, 0.9),
+        true,
+    );
+    add(
+        right + up * 0.15 - forward * 0.7,
+        DVec3::new(0.22, 0.25, 0.3),
+        false,
+    );
+    add(
+        right * 0.4 + up * 0.6 + forward,
+        DVec3::new(0.35, 0.37, 0.4),
+        true,
+    );
 }
 
 /// A soft gradient: darker below, light above.
@@ -105,9 +125,6 @@ fn backdrop(up: DVec3) -> Background {
     };
     Background::Gradient {
         axis: up.normalize_or(DVec3::Z),
-        map: vec![
-            stop(0.2, 0.32, 0.33, 0.35),
-            stop(0.8, 0.86, 0.88, 0.9),
-        ],
+        map: vec![stop(0.2, 0.32, 0.33, 0.35), stop(0.8, 0.86, 0.88, 0.9)],
     }
 }

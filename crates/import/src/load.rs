@@ -102,7 +102,12 @@ impl Format {
                 ));
             }
             _ if begins_as_ascii_stl(bytes) => Self::Stl,
-            "" => return Err(("the file has no suffix to tell its format".to_owned(), FORMATS)),
+            "" => {
+                return Err((
+                    "the file has no suffix to tell its format".to_owned(),
+                    FORMATS,
+                ));
+            }
             _ => return Err((format!("`.{suffix}` is no format that is read"), FORMATS)),
         })
     }
@@ -141,7 +146,10 @@ mod tests {
             "gone.stl: error: there is no such file"
         );
         let unknown = first_message("a.step", Some(b"ISO-10303-21;"));
-        assert!(unknown.contains(".csg") && unknown.contains(".ply"), "{unknown}");
+        assert!(
+            unknown.contains(".csg") && unknown.contains(".ply"),
+            "{unknown}"
+        );
         assert!(first_message("a.scad", Some(b"cube(1);")).contains("openscad -o"));
         assert!(first_message("nothing", Some(b"")).contains("suffix"));
     }

@@ -50,7 +50,9 @@ impl Triangulator {
         }
         let outline = project(corners);
         if is_convex(&outline) {
-            return Ok((1..corners.len() as u32 - 1).map(|i| [0, i, i + 1]).collect());
+            return Ok((1..corners.len() as u32 - 1)
+                .map(|i| [0, i, i + 1])
+                .collect());
         }
         self.clip_ears(&outline)
     }
@@ -241,7 +243,12 @@ mod tests {
         let mut comb = vec![(20.0, -1.0), (20.0, 5.0)];
         for tooth in (0..10).rev() {
             let x = 2.0 * f64::from(tooth);
-            comb.extend([(x + 1.5, 5.0), (x + 1.5, 0.0), (x + 1.0, 0.0), (x + 0.5, 5.0)]);
+            comb.extend([
+                (x + 1.5, 5.0),
+                (x + 1.5, 0.0),
+                (x + 1.0, 0.0),
+                (x + 0.5, 5.0),
+            ]);
         }
         comb.push((0.0, -1.0));
         for outline in [arrow, flat(&comb)] {
@@ -255,7 +262,11 @@ mod tests {
         let mut outline = Vec::new();
         for i in 0..2000 {
             let angle = f64::from(i) * 0.02;
-            outline.push(DVec3::new(angle * libm::cos(angle), angle * libm::sin(angle), 0.0));
+            outline.push(DVec3::new(
+                angle * libm::cos(angle),
+                angle * libm::sin(angle),
+                0.0,
+            ));
         }
         for i in (0..2000).rev() {
             let angle = f64::from(i) * 0.02;
@@ -267,7 +278,14 @@ mod tests {
 
     #[test]
     fn corners_on_straight_edges_are_used() {
-        let outline = flat(&[(0.0, 0.0), (1.0, 0.0), (2.0, 0.0), (2.0, 2.0), (1.0, 2.0), (0.0, 2.0)]);
+        let outline = flat(&[
+            (0.0, 0.0),
+            (1.0, 0.0),
+            (2.0, 0.0),
+            (2.0, 2.0),
+            (1.0, 2.0),
+            (0.0, 2.0),
+        ]);
         check(&outline);
         let triangles = Triangulator::new().triangulate(&outline).expect("simple");
         for corner in 0..6 {
@@ -291,7 +309,11 @@ mod tests {
         let mut zigzag = Vec::new();
         for i in 0..200_000 {
             let x = f64::from(i);
-            zigzag.push(DVec3::new(x, if i % 2 == 0 { 0.0 } else { 1.0e6 / (1.0 + x) }, 0.0));
+            zigzag.push(DVec3::new(
+                x,
+                if i % 2 == 0 { 0.0 } else { 1.0e6 / (1.0 + x) },
+                0.0,
+            ));
         }
         // Either it is done or it is refused; what matters is that it ends.
         let mut triangulator = Triangulator { work_left: 1 << 24 };

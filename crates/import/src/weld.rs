@@ -24,11 +24,6 @@ impl Welder {
         index
     }
 
-    /// The vertices so far.
-    pub(crate) fn positions(&self) -> &[DVec3] {
-        &self.positions
-    }
-
     /// The vertices.
     pub(crate) fn into_positions(self) -> Vec<DVec3> {
         self.positions

@@ -25,7 +25,10 @@ pub(super) fn add_objects(
     smooth::apply(&mut model);
     let use_colors = !model.colors.is_empty() && materials.none_is_known();
     if !model.colors.is_empty() && !use_colors {
-        diagnostics.warning(None, "the vertices' colours are passed over for the materials");
+        diagnostics.warning(
+            None,
+            "the vertices' colours are passed over for the materials",
+        );
     }
     model.colors.resize(model.positions.len(), None);
     let mut order: Vec<usize> = (0..model.faces.len()).collect();
@@ -61,8 +64,12 @@ pub(super) fn add_objects(
             );
         }
         let name = &model.objects[model.faces[first].object as usize];
-        let name = if name.is_empty() { file_stem(path) } else { name.clone() };
-        if let Err(error) = part.add(name, &model, painted, materials, builder) {
+        let name = if name.is_empty() {
+            file_stem(path)
+        } else {
+            name.clone()
+        };
+        if let Err(error) = part.add(name, &model, &painted, materials, builder) {
             diagnostics.error(None, error.to_string());
         }
     }
@@ -165,7 +172,7 @@ impl Part {
         self,
         name: String,
         model: &Model,
-        painted: Painted,
+        painted: &Painted,
         materials: &Materials,
         builder: &mut SceneBuilder,
     ) -> Result<(), MeshError> {
@@ -178,10 +185,13 @@ impl Part {
             mesh = mesh.with_normals(attribute(values, normal_corners))?;
         }
         if !texcoords.is_empty() {
-            let values = texcoords.iter().map(|&i| model.texcoords[i as usize]).collect();
+            let values = texcoords
+                .iter()
+                .map(|&i| model.texcoords[i as usize])
+                .collect();
             mesh = mesh.with_texcoords(attribute(values, uv_corners))?;
         }
-        let each: Vec<MaterialId> = match &painted {
+        let each: Vec<MaterialId> = match painted {
             Painted::Faces { each, .. } => each.clone(),
             Painted::Whole(id) => vec![*id; self.materials.len()],
             Painted::Plain | Painted::Varied => {

@@ -51,7 +51,14 @@ pub fn import(path: &Path, bytes: Vec<u8>, files: &dyn FileSystem, options: &Opt
     }
     let materials = bind_materials(&model, &libraries.materials, &mut builder, &mut diagnostics);
     if !diagnostics.has_errors() {
-        mesh::add_objects(model, &materials, path, source, &mut builder, &mut diagnostics);
+        mesh::add_objects(
+            model,
+            &materials,
+            path,
+            source,
+            &mut builder,
+            &mut diagnostics,
+        );
     }
     if builder.so_far().objects().is_empty() && !diagnostics.has_errors() {
         diagnostics.warning(None, "the file holds no faces");

@@ -68,7 +68,9 @@ impl Reader<'_> {
         }
         let span = keyword.span(self.source);
         let Some(mut entry) = self.entry.take() else {
-            return self.diagnostics.warning(span, "passed over: it comes before any `newmtl`");
+            return self
+                .diagnostics
+                .warning(span, "passed over: it comes before any `newmtl`");
         };
         match keyword.bytes {
             b"Ka" => entry.ambient = self.color(statement).or(entry.ambient),
@@ -152,13 +154,19 @@ impl Entry {
         let is_glass = matches!(illum, 4 | 6 | 7 | 9);
         let opacity = self.opacity.unwrap_or(1.0).clamp(0.0, 1.0);
         // Glass that is said to be opaque is meant as glass: its transparency stands in `illum`.
-        let clear = if is_glass && opacity == 1.0 { 1.0 } else { 1.0 - opacity };
+        let clear = if is_glass && opacity == 1.0 {
+            1.0
+        } else {
+            1.0 - opacity
+        };
         let (rgb, filter, transmit) = match self.filter {
             Some(tint) if is_glass => (tint.clamp(DVec3::ZERO, DVec3::ONE), clear, 0.0),
             _ => (diffuse, 0.0, clear),
         };
         let mut finish = Finish {
-            ambient: self.ambient.map_or(DVec3::splat(0.1), |ka| ka.max(DVec3::ZERO) * 0.1),
+            ambient: self
+                .ambient
+                .map_or(DVec3::splat(0.1), |ka| ka.max(DVec3::ZERO) * 0.1),
             diffuse: 1.0,
             ..Finish::default()
         };

@@ -36,7 +36,10 @@ pub(super) fn apply(model: &mut Model) {
         let corners = &mut model.corners[face.corners.clone()];
         if smooth(face, corners) {
             for corner in corners {
-                corner[2] = index.get(&(corner[0], face.smoothing)).copied().unwrap_or(NONE);
+                corner[2] = index
+                    .get(&(corner[0], face.smoothing))
+                    .copied()
+                    .unwrap_or(NONE);
             }
         }
     }

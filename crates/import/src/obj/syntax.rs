@@ -13,6 +13,9 @@ use crate::{Diagnostics, SourceId, Span};
 /// A corner has no such reference.
 pub(super) const NONE: u32 = u32::MAX;
 
+/// What a corner names.
+const ATTRIBUTES: [&str; 3] = ["vertex", "texture coordinate", "normal"];
+
 /// What a file says.
 #[derive(Debug, Default)]
 pub(super) struct Model {
@@ -63,6 +66,7 @@ struct Reader<'a> {
     smoothing: u32,
     /// Keywords already warned about.
     warned: BTreeSet<Vec<u8>>,
+    missing_warned: [bool; 3],
 }
 
 pub(super) fn read(bytes: &[u8], source: SourceId, diagnostics: &mut Diagnostics) -> Model {
@@ -88,6 +92,7 @@ pub(super) fn read(bytes: &[u8], source: SourceId, diagnostics: &mut Diagnostics
         material: None,
         smoothing: 0,
         warned: BTreeSet::new(),
+        missing_warned: [false; 3],
     };
     for mut statement in JoinedLines::new(bytes) {
         if let Some(keyword) = statement.next() {
@@ -255,13 +260,15 @@ impl Reader<'_> {
             self.model.texcoords.len(),
             self.model.normals.len(),
         ];
-        let names = ["vertex", "texture coordinate", "normal"];
         let mut corner = [NONE; 3];
         let mut at = word.start;
         for (field, bytes) in word.bytes.split(|&b| b == b'/').enumerate() {
             let part = Word { bytes, start: at };
             at += bytes.len() + 1;
-            if field > 0 && bytes.is_empty() {
+            if field > 0 && (bytes.is_empty() || self.totals.get(field) == Some(&0)) {
+                if !bytes.is_empty() {
+                    self.missing_attribute(field, part);
+                }
                 continue;
             }
             let (Some(index), Some(total)) = (part.integer(), self.totals.get(field)) else {
@@ -277,7 +284,7 @@ impl Reader<'_> {
                     .and_then(|back| so_far[field].checked_sub(back)),
             };
             let Some(resolved) = resolved.filter(|r| r < total && *r < NONE as usize) else {
-                let name = names[field];
+                let name = ATTRIBUTES[field];
                 let message = match index {
                     0 => format!("{name} 0 does not exist: counting begins at 1"),
                     1.. => format!("the face uses {name} {index}, but there are {total}"),
@@ -292,6 +299,18 @@ impl Reader<'_> {
             corner[field] = resolved as u32;
         }
         Some(corner)
+    }
+
+    /// Some programs name normals or texture coordinates that they did not export.
+    fn missing_attribute(&mut self, field: usize, part: Word<'_>) {
+        if !self.missing_warned[field] {
+            self.missing_warned[field] = true;
+            let message = format!(
+                "the faces name {}s, but the file has none",
+                ATTRIBUTES[field]
+            );
+            self.diagnostics.warning(part.span(self.source), message);
+        }
     }
 
     /// The index of the current object, made when its first face comes.

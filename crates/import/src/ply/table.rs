@@ -82,11 +82,7 @@ pub(super) fn read(
 
 impl Reader<'_> {
     /// Hands every good row to `take`; `None` if the rest of the body cannot be read.
-    fn each_row(
-        &mut self,
-        element: &Element,
-        mut take: impl FnMut(&mut Self, &Row),
-    ) -> Option<()> {
+    fn each_row(&mut self, element: &Element, mut take: impl FnMut(&mut Self, &Row)) -> Option<()> {
         let mut row = Row::default();
         for _ in 0..element.count {
             match self.body.read_row(element, &mut row) {
@@ -129,7 +125,9 @@ impl Reader<'_> {
             if !p.is_finite() {
                 let index = reader.tables.positions.len();
                 let message = format!("vertex {index} is not finite: ({}, {}, {})", p.x, p.y, p.z);
-                reader.body.error(row.place.clone(), &message, reader.diagnostics);
+                reader
+                    .body
+                    .error(row.place.clone(), &message, reader.diagnostics);
             }
             reader.tables.positions.push(p);
             if let Some(columns) = normal {
@@ -188,7 +186,8 @@ impl Reader<'_> {
     fn face(&mut self, corners: &[f64], row: &Row) -> usize {
         if corners.len() < 3 {
             let message = format!("a face has at least 3 corners, this one {}", corners.len());
-            self.body.error(row.place.clone(), &message, self.diagnostics);
+            self.body
+                .error(row.place.clone(), &message, self.diagnostics);
             return 0;
         }
         let start = self.faces.corners.len();
@@ -228,7 +227,8 @@ impl Reader<'_> {
             return Some(corner as u32);
         }
         let message = format!("the face uses vertex {corner}, but there are {count} (from 0)");
-        self.body.error(row.place.clone(), &message, self.diagnostics);
+        self.body
+            .error(row.place.clone(), &message, self.diagnostics);
         None
     }
 
@@ -249,7 +249,8 @@ impl Reader<'_> {
             let triangles = match triangulator.triangulate(&outline) {
                 Ok(triangles) => triangles,
                 Err(error) => {
-                    self.body.error(place.clone(), &error.to_string(), self.diagnostics);
+                    self.body
+                        .error(place.clone(), &error.to_string(), self.diagnostics);
                     return;
                 }
             };
@@ -257,7 +258,9 @@ impl Reader<'_> {
                 colors.extend(triangles.iter().map(|_| given[face]));
             }
             let named = |t: [u32; 3]| t.map(|i| corners[i as usize]);
-            self.tables.triangles.extend(triangles.into_iter().map(named));
+            self.tables
+                .triangles
+                .extend(triangles.into_iter().map(named));
         }
         self.tables.face_colors = colors;
     }

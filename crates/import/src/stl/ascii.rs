@@ -53,7 +53,8 @@ impl Reader<'_> {
             self.corners = Some((Vec::with_capacity(3), span));
             self.spoiled = false;
             if !words.next().is_some_and(|w| w.is("loop")) {
-                self.diagnostics.error(span, "`outer` must be followed by `loop`");
+                self.diagnostics
+                    .error(span, "`outer` must be followed by `loop`");
             }
         } else if keyword.is("endloop") {
             self.end_loop(span);
@@ -86,7 +87,11 @@ impl Reader<'_> {
                 Some(value) if value.is_finite() => position[axis] = value,
                 number => {
                     self.spoiled = true;
-                    let what = if number.is_some() { "finite" } else { "a number" };
+                    let what = if number.is_some() {
+                        "finite"
+                    } else {
+                        "a number"
+                    };
                     let message = format!("`{}` is not {what}", word.shown());
                     return self.diagnostics.error(word.span(self.source), message);
                 }
@@ -94,14 +99,18 @@ impl Reader<'_> {
         }
         match &mut self.corners {
             Some((corners, _)) => corners.push(position),
-            None => self.diagnostics.error(span, "this vertex is not in an `outer loop`"),
+            None => self
+                .diagnostics
+                .error(span, "this vertex is not in an `outer loop`"),
         }
     }
 
     /// The triangles of a loop.
     fn end_loop(&mut self, span: Span) {
         let Some((corners, start)) = self.corners.take() else {
-            return self.diagnostics.error(span, "`endloop` without `outer loop`");
+            return self
+                .diagnostics
+                .error(span, "`endloop` without `outer loop`");
         };
         if self.spoiled {
             return;
@@ -140,7 +149,8 @@ impl Reader<'_> {
         if self.corners.is_some() {
             self.diagnostics.error(end, "the file ends inside a facet");
         } else if self.in_solid {
-            self.diagnostics.warning(end, "the file ends without `endsolid`");
+            self.diagnostics
+                .warning(end, "the file ends without `endsolid`");
         }
         self.end_solid();
         self.parts

@@ -55,7 +55,11 @@ pub(super) fn read(bytes: &[u8], diagnostics: &mut Diagnostics) -> Vec<Part> {
         );
     }
     let mut part = Part::default();
-    for (index, record) in records.chunks_exact(RECORD).take(count as usize).enumerate() {
+    for (index, record) in records
+        .chunks_exact(RECORD)
+        .take(count as usize)
+        .enumerate()
+    {
         let mut numbers = record.chunks_exact(4).skip(3).map(|b| {
             // chunks_exact(4) gives four bytes.
             f64::from(f32::from_le_bytes([b[0], b[1], b[2], b[3]]))

@@ -27,7 +27,8 @@ struct Part {
 
 impl Part {
     fn add(&mut self, corners: [DVec3; 3]) {
-        self.triangles.push(corners.map(|p| self.vertices.vertex(p)));
+        self.triangles
+            .push(corners.map(|p| self.vertices.vertex(p)));
     }
 }
 
