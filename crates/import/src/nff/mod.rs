@@ -7,18 +7,20 @@
 mod cone;
 pub mod material;
 mod polygons;
+mod shapes;
+mod view;
 mod words;
 
 use std::path::Path;
 
-use octray_geometry::{ShapeError, Solid};
 use octray_math::DVec3;
-use octray_scene::{Background, Camera, Encoding, Light, MaterialId, Object, SceneBuilder, View};
+use octray_scene::{Background, Encoding, Light, MaterialId, SceneBuilder, View};
 
 use crate::polygon::Triangulator;
 use crate::text::{self, Word};
-use crate::{Diagnostics, FileSystem, Imported, Options, SourceId, Span};
+use crate::{Diagnostics, FileSystem, Imported, Options, SourceId};
 use polygons::Polygons;
+use view::ViewPoint;
 use words::NffWords;
 
 /// Reads the bytes of the file `path`.
@@ -65,17 +67,6 @@ pub fn import(
     }
     let builder = reader.end();
     Imported::finish(builder, diagnostics)
-}
-
-/// What stands after `v`.
-#[derive(Default)]
-struct ViewPoint {
-    place: Option<Span>,
-    from: Option<DVec3>,
-    at: Option<DVec3>,
-    up: Option<DVec3>,
-    /// Degrees.
-    angle: Option<f64>,
 }
 
 struct Reader<'a> {
@@ -129,28 +120,10 @@ impl Reader<'_> {
         }
     }
 
-    /// Goes on to the next word that may begin an entity.
+    /// Goes on to the next word that is no number.
     fn skip(&mut self) {
-        let begins = |word: &Word<'_>| {
-            let keywords: [&[u8]; 14] = [
-                b"v",
-                b"from",
-                b"at",
-                b"up",
-                b"angle",
-                b"hither",
-                b"resolution",
-                b"b",
-                b"l",
-                b"f",
-                b"s",
-                b"c",
-                b"p",
-                b"pp",
-            ];
-            keywords.contains(&word.bytes)
-        };
-        while self.words.peek().is_some_and(|word| !begins(&word)) {
+        let is_number = |word: Word<'_>| word.number().is_some();
+        while self.words.peek().is_some_and(is_number) {
             self.words.next();
         }
     }
@@ -195,35 +168,6 @@ impl Reader<'_> {
         self.numbers::<3>(keyword).map(DVec3::from_array)
     }
 
-    fn angle(&mut self, keyword: Word<'_>) {
-        let Some([degrees]) = self.numbers::<1>(keyword) else {
-            return;
-        };
-        if degrees > 0.0 && degrees < 180.0 {
-            self.view.angle = Some(degrees);
-        } else {
-            let message = format!("the angle must lie between 0 and 180 degrees, not {degrees}");
-            self.diagnostics.error(keyword.span(self.source), message);
-        }
-    }
-
-    fn resolution(&mut self, keyword: Word<'_>) {
-        let Some(size) = self.numbers::<2>(keyword) else {
-            return;
-        };
-        if size
-            .iter()
-            .all(|&n| libm::trunc(n) == n && (1.0..=65536.0).contains(&n))
-        {
-            let [width, height] = size.map(|n| n as u32);
-            self.builder.settings_mut().size = Some((width, height));
-        } else {
-            let [width, height] = size;
-            let message = format!("a picture of {width} by {height} pixels cannot be made");
-            self.diagnostics.error(keyword.span(self.source), message);
-        }
-    }
-
     fn light(&mut self, keyword: Word<'_>) {
         let Some(position) = self.vector(keyword) else {
             return;
@@ -254,124 +198,6 @@ impl Reader<'_> {
         self.material = Some(self.builder.add_material(fill.material(&name)));
     }
 
-    fn current_material(&mut self, keyword: Word<'_>) -> MaterialId {
-        if let Some(material) = self.material {
-            return material;
-        }
-        let message = "no `f` comes before this: it gets the default material";
-        self.diagnostics.warning(keyword.span(self.source), message);
-        let material = self.builder.add_material(crate::dress::default_material());
-        self.material = Some(material);
-        material
-    }
-
-    fn sphere(&mut self, keyword: Word<'_>) {
-        let Some([x, y, z, radius]) = self.numbers::<4>(keyword) else {
-            return;
-        };
-        let material = self.current_material(keyword);
-        // A negative radius shows only the inside; here both sides are always seen.
-        let sphere = Solid::sphere(radius.abs()).and_then(|s| s.translate(DVec3::new(x, y, z)));
-        let Some(solid) = self.made(keyword, sphere) else {
-            return;
-        };
-        self.counts[0] += 1;
-        let name = format!("sphere {}", self.counts[0]);
-        self.builder
-            .add_object(Object::solid(name, solid, material));
-    }
-
-    fn cone(&mut self, keyword: Word<'_>) {
-        let Some([x0, y0, z0, r0, x1, y1, z1, r1]) = self.numbers::<8>(keyword) else {
-            return;
-        };
-        let material = self.current_material(keyword);
-        let (base, apex) = (DVec3::new(x0, y0, z0), DVec3::new(x1, y1, z1));
-        let cone = cone::open_cone(base, r0.abs(), apex, r1.abs());
-        let Some(sheet) = self.made(keyword, cone) else {
-            return;
-        };
-        self.counts[1] += 1;
-        let kind = if r0 == r1 { "cylinder" } else { "cone" };
-        let name = format!("{kind} {}", self.counts[1]);
-        self.builder
-            .add_object(Object::sheet(name, sheet, material));
-    }
-
-    /// A shape, or a warning: what has no extent cannot be seen.
-    fn made<T>(&mut self, keyword: Word<'_>, shape: Result<T, ShapeError>) -> Option<T> {
-        match shape {
-            Ok(shape) => Some(shape),
-            Err(error) => {
-                let message = format!("passed over: {error}");
-                self.diagnostics.warning(keyword.span(self.source), message);
-                None
-            }
-        }
-    }
-
-    fn polygon(&mut self, keyword: Word<'_>, with_normals: bool) {
-        let span = keyword.span(self.source);
-        let Some([count]) = self.numbers::<1>(keyword) else {
-            return;
-        };
-        if !(count >= 3.0 && libm::trunc(count) == count) {
-            let message = format!("a polygon has at least 3 vertices, not {count}");
-            self.diagnostics.error(span, message);
-            return self.skip();
-        }
-        self.current_material(keyword);
-        let (mut corners, mut normals) = (Vec::new(), Vec::new());
-        let mut finite = true;
-        // The numbers there are decide how far this goes, not the count that is claimed.
-        while (corners.len() as f64) < count {
-            let mut values = [0.0; 6];
-            let needed = if with_normals { 6 } else { 3 };
-            for value in &mut values[..needed] {
-                let Some(number) = self.number() else {
-                    let message = format!(
-                        "the polygon has {count} vertices, but only {} are complete",
-                        corners.len()
-                    );
-                    self.diagnostics.error(span, message);
-                    return self.skip();
-                };
-                finite &= number.is_finite();
-                *value = number;
-            }
-            let [x, y, z, nx, ny, nz] = values;
-            corners.push(DVec3::new(x, y, z));
-            normals.push(DVec3::new(nx, ny, nz));
-        }
-        if !finite {
-            return;
-        }
-        match self.triangulator.triangulate(&corners) {
-            Ok(triangles) => {
-                let normals = with_normals.then_some(&normals[..]);
-                self.polygons.add(&corners, normals, &triangles);
-            }
-            Err(error) => self.diagnostics.error(span, error.to_string()),
-        }
-    }
-
-    /// The polygons since the last `f` become one object.
-    fn end_polygons(&mut self) {
-        let polygons = std::mem::take(&mut self.polygons);
-        let Some(material) = self.material.filter(|_| !polygons.is_empty()) else {
-            return;
-        };
-        self.counts[2] += 1;
-        let name = format!("polygons {}", self.counts[2]);
-        match polygons.into_mesh() {
-            Ok(mesh) => {
-                let object = Object::sheet(name, octray_geometry::Sheet::mesh(mesh), material);
-                self.builder.add_object(object);
-            }
-            Err(error) => self.diagnostics.error(None, format!("{name}: {error}")),
-        }
-    }
-
     fn end(mut self) -> SceneBuilder {
         self.end_polygons();
         let count = self.lights.len();
@@ -381,36 +207,5 @@ impl Reader<'_> {
         }
         self.camera();
         self.builder
-    }
-
-    fn camera(&mut self) {
-        let ViewPoint {
-            place,
-            from,
-            at,
-            up,
-            angle,
-        } = std::mem::take(&mut self.view);
-        if let Some(up) = up.and_then(DVec3::try_normalize) {
-            self.builder.settings_mut().up = up;
-        }
-        let Some(place) = place else {
-            if from.is_none() {
-                self.diagnostics
-                    .warning(None, "no viewpoint `v`: all of the scene is shown");
-            }
-            return;
-        };
-        let (Some(from), Some(at), Some(up), Some(angle)) = (from, at, up, angle) else {
-            let message = "a viewpoint needs `from`, `at`, `up` and `angle`";
-            return self.diagnostics.error(place, message);
-        };
-        match Camera::look_at(from, at, up, angle.to_radians()) {
-            Some(camera) => self.builder.set_camera(camera),
-            None => self.diagnostics.error(
-                place,
-                "`from` and `at` must be apart, and `up` must not point along the view",
-            ),
-        }
     }
 }

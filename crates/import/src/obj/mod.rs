@@ -3,6 +3,7 @@
 //! Format: "Object Files (.obj)" and "Material Library File (.mtl)", Wavefront's Advanced
 //! Visualizer 3.0. Points, lines, curves and free-form surfaces are passed over with a warning.
 
+mod faces;
 mod lines;
 mod mesh;
 mod mtl;
@@ -130,7 +131,7 @@ impl Libraries<'_> {
     ) {
         let several = split_names(names);
         let whole = [names.replace("\\ ", " ")];
-        let as_one = several.len() > 1 && self.find(&whole[0]).is_ok();
+        let as_one = several.len() > 1 && self.read(&whole[0]).is_ok();
         for name in if as_one { &whole[..] } else { &several[..] } {
             match self.find(name) {
                 Ok(None) => {}
@@ -158,18 +159,20 @@ impl Libraries<'_> {
     fn find(&self, name: &str) -> io::Result<Option<(PathBuf, Vec<u8>)>> {
         let slashed = name.replace('\\', "/");
         let last = slashed.rsplit('/').next().unwrap_or_default();
-        let mut first_error = None;
-        for candidate in [name, &slashed, last] {
-            let path = self.folder.join(candidate);
-            if self.loaded.contains(&path) {
-                return Ok(None);
-            }
-            match self.files.read(&path, self.limit) {
-                Ok(bytes) => return Ok(Some((path, bytes))),
-                Err(error) => first_error.get_or_insert(error),
-            };
+        self.read(name).or_else(|error| {
+            self.read(&slashed)
+                .or_else(|_| self.read(last))
+                .map_err(|_| error)
+        })
+    }
+
+    fn read(&self, name: &str) -> io::Result<Option<(PathBuf, Vec<u8>)>> {
+        let path = self.folder.join(name);
+        if self.loaded.contains(&path) {
+            return Ok(None);
         }
-        Err(first_error.unwrap_or_else(|| io::ErrorKind::NotFound.into()))
+        let bytes = self.files.read(&path, self.limit)?;
+        Ok(Some((path, bytes)))
     }
 }
 

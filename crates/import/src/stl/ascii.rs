@@ -150,7 +150,7 @@ impl Reader<'_> {
             self.diagnostics.error(end, "the file ends inside a facet");
         } else if self.in_solid {
             self.diagnostics
-                .warning(end, "the file ends without `endsolid`");
+                .error(end, "the file ends without `endsolid`: it is not complete");
         }
         self.end_solid();
         self.parts
