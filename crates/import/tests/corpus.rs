@@ -12,6 +12,7 @@ use octray_scene::{Object, Shape};
 use prism::{measure, mesh_of, only_mesh};
 
 /// The folder of test files, if there is one on this machine.
+#[allow(clippy::print_stdout, reason = "a skipped test must say so")]
 fn corpus() -> Option<PathBuf> {
     let default = || Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data");
     let folder = std::env::var_os("OCTRAY_CORPUS").map_or_else(default, PathBuf::from);
