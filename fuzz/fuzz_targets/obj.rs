@@ -16,6 +16,6 @@ fuzz_target!(|data: &[u8]| {
     let imported = obj::import(Path::new("a.obj"), data.to_vec(), &files, &options);
     assert_eq!(imported.scene.is_none(), imported.diagnostics.has_errors());
     for diagnostic in imported.diagnostics.iter() {
-        imported.diagnostics.render(diagnostic);
+        assert!(!imported.diagnostics.render(diagnostic).is_empty());
     }
 });
