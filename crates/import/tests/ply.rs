@@ -250,6 +250,10 @@ fn headers_with_mistakes() {
             "ply\nelement v 1\nproperty list float int x\n",
             "a.ply:3:1: error: the length of a list must have an integer type",
         ),
+        (
+            "ply\nelement vertex 1\nelement vertex 2\n",
+            "a.ply:3:1: error: there are two elements `vertex`",
+        ),
         ("ply\nhello\n", "a.ply:2:1: error: `hello` is no keyword"),
         (
             "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nend_header\n1\n",

@@ -132,7 +132,13 @@ pub(super) fn read(
             b"comment" | b"obj_info" => {}
             b"format" => format = read_format(keyword, words, source, diagnostics),
             b"element" => {
-                elements.push(read_element(whole(line), words, source, diagnostics)?);
+                let element = read_element(whole(line), words, source, diagnostics)?;
+                if elements.iter().any(|e| e.name == element.name) {
+                    let message = format!("there are two elements `{}`", element.name);
+                    diagnostics.error(whole(line), message);
+                    return None;
+                }
+                elements.push(element);
             }
             b"property" => {
                 let property = read_property(whole(line), words, source, diagnostics)?;

@@ -79,16 +79,16 @@ fn add_mesh(
     diagnostics: &mut Diagnostics,
 ) -> Result<(), MeshError> {
     let triangles = tables.triangles;
-    let painted = match (&tables.face_colors, &tables.colors) {
-        (Some(colors), _) => paint(colors.iter().map(|&c| Some(c)), builder),
-        (None, Some(colors)) => {
+    let painted = match &tables.colors {
+        _ if !tables.face_colors.is_empty() => paint(tables.face_colors.into_iter(), builder),
+        Some(colors) => {
             let uniform = |t: &[u32; 3]| {
                 let [a, b, c] = t.map(|i| colors[i as usize]);
                 (a == b && b == c).then_some(a)
             };
             paint(triangles.iter().map(uniform), builder)
         }
-        (None, None) => Painted::Plain,
+        None => Painted::Plain,
     };
     let mut mesh = TriangleMesh::new(tables.positions, triangles.clone())?;
     if let Some(values) = tables.normals {

@@ -17,8 +17,8 @@ pub(super) struct Tables {
     /// Linear, per vertex.
     pub colors: Option<Vec<DVec3>>,
     pub triangles: Vec<[u32; 3]>,
-    /// Linear, per triangle.
-    pub face_colors: Option<Vec<DVec3>>,
+    /// Linear, per triangle; empty if no face has a colour.
+    pub face_colors: Vec<Option<DVec3>>,
 }
 
 struct Reader<'a> {
@@ -33,9 +33,15 @@ struct Reader<'a> {
 #[derive(Default)]
 struct Faces {
     corners: Vec<u32>,
-    /// Where each face ends in `corners`, and its place in the file.
-    ends: Vec<(usize, std::ops::Range<usize>)>,
-    colors: Option<Vec<DVec3>>,
+    faces: Vec<Face>,
+}
+
+struct Face {
+    /// Where it ends in [`Faces::corners`].
+    end: usize,
+    /// Its bytes in the file.
+    place: std::ops::Range<usize>,
+    color: Option<DVec3>,
 }
 
 /// Reads the body. `None` if it cannot be read to its end; other errors are only reported.
@@ -164,31 +170,23 @@ impl Reader<'_> {
             return None;
         };
         let color = color_columns(element);
-        let mut colors = Vec::new();
         self.each_row(element, |reader, row| {
             let corners = row.list(column);
-            let pieces = if strips {
-                reader.strip(corners, row)
+            let color = color.map(|columns| columns.color(row));
+            if strips {
+                reader.strip(corners, color, row);
             } else {
-                reader.face(corners, row)
-            };
-            if let Some(columns) = color {
-                colors.extend(std::iter::repeat_n(columns.color(row), pieces));
+                reader.face(corners, color, row);
             }
-        })?;
-        if color.is_some() {
-            self.faces.colors = Some(colors);
-        }
-        Some(())
+        })
     }
 
-    /// Adds a polygon; returns how many faces that gave.
-    fn face(&mut self, corners: &[f64], row: &Row) -> usize {
+    fn face(&mut self, corners: &[f64], color: Option<DVec3>, row: &Row) {
         if corners.len() < 3 {
             let message = format!("a face has at least 3 corners, this one {}", corners.len());
             self.body
                 .error(row.place.clone(), &message, self.diagnostics);
-            return 0;
+            return;
         }
         let start = self.faces.corners.len();
         for &corner in corners {
@@ -196,17 +194,18 @@ impl Reader<'_> {
                 self.faces.corners.push(index);
             } else {
                 self.faces.corners.truncate(start);
-                return 0;
+                return;
             }
         }
-        let end = self.faces.corners.len();
-        self.faces.ends.push((end, row.place.clone()));
-        1
+        self.faces.faces.push(Face {
+            end: self.faces.corners.len(),
+            place: row.place.clone(),
+            color,
+        });
     }
 
     /// Adds the triangles of strips; -1 begins a new strip.
-    fn strip(&mut self, corners: &[f64], row: &Row) -> usize {
-        let mut pieces = 0;
+    fn strip(&mut self, corners: &[f64], color: Option<DVec3>, row: &Row) {
         for strip in corners.split(|&c| c == -1.0) {
             for (i, triple) in strip.windows(3).enumerate() {
                 let [a, b, c] = [triple[0], triple[1], triple[2]];
@@ -214,11 +213,10 @@ impl Reader<'_> {
                 let triangle = if i % 2 == 0 { [a, b, c] } else { [b, a, c] };
                 // Strips turn corners by triangles that name a vertex twice.
                 if a != b && b != c && c != a {
-                    pieces += self.face(&triangle, row);
+                    self.face(&triangle, color, row);
                 }
             }
         }
-        pieces
     }
 
     fn index(&mut self, corner: f64, row: &Row) -> Option<u32> {
@@ -238,10 +236,10 @@ impl Reader<'_> {
         }
         let mut triangulator = Triangulator::new();
         let faces = std::mem::take(&mut self.faces);
-        let mut colors = faces.colors.as_ref().map(|_| Vec::new());
+        let colored = faces.faces.iter().any(|face| face.color.is_some());
         let mut start = 0;
         let mut outline = Vec::new();
-        for (face, (end, place)) in faces.ends.iter().enumerate() {
+        for Face { end, place, color } in &faces.faces {
             let corners = &faces.corners[start..*end];
             start = *end;
             outline.clear();
@@ -254,15 +252,15 @@ impl Reader<'_> {
                     return;
                 }
             };
-            if let (Some(colors), Some(given)) = (&mut colors, &faces.colors) {
-                colors.extend(triangles.iter().map(|_| given[face]));
+            if colored {
+                let colors = triangles.iter().map(|_| *color);
+                self.tables.face_colors.extend(colors);
             }
             let named = |t: [u32; 3]| t.map(|i| corners[i as usize]);
             self.tables
                 .triangles
                 .extend(triangles.into_iter().map(named));
         }
-        self.tables.face_colors = colors;
     }
 }
 
