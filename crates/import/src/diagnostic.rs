@@ -3,6 +3,7 @@
 use std::fmt;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use annotate_snippets::{AnnotationKind, Level, Renderer, Snippet};
 
@@ -66,7 +67,7 @@ pub struct Diagnostic {
 
 struct Source {
     path: PathBuf,
-    bytes: Vec<u8>,
+    bytes: Arc<Vec<u8>>,
     line_starts: Vec<usize>,
 }
 
@@ -101,7 +102,7 @@ impl Diagnostics {
             .collect();
         self.sources.push(Source {
             path: path.to_owned(),
-            bytes,
+            bytes: Arc::new(bytes),
             line_starts,
         });
         SourceId(self.sources.len() as u32 - 1)
@@ -114,6 +115,15 @@ impl Diagnostics {
     #[must_use]
     pub fn source(&self, id: SourceId) -> &[u8] {
         &self.sources[id.0 as usize].bytes
+    }
+
+    /// The bytes of a source, to keep while messages are added.
+    ///
+    /// # Panics
+    /// If the id is of another `Diagnostics`.
+    #[must_use]
+    pub fn shared_source(&self, id: SourceId) -> Arc<Vec<u8>> {
+        Arc::clone(&self.sources[id.0 as usize].bytes)
     }
 
     /// The path of a source, as it was given.

@@ -5,18 +5,26 @@
 //! a file claims are checked against [`Options::memory_budget`] first. Only [`Disk`] touches the file system.
 
 pub mod diagnostic;
+pub mod dress;
+mod face_colors;
 mod files;
+pub mod load;
+mod mesh_object;
 pub mod nff;
 pub mod obj;
 pub mod openscad;
 pub mod ply;
+pub mod polygon;
 pub mod pov;
 pub mod stl;
+mod text;
+mod weld;
 
 pub use diagnostic::{Diagnostic, Diagnostics, Severity, SourceId, Span};
 pub use files::{Disk, FileSystem, InMemory};
+pub use load::load;
 
-use octray_scene::Scene;
+use octray_scene::{Scene, SceneBuilder};
 
 /// How to read.
 #[derive(Clone, Debug)]
@@ -43,4 +51,33 @@ pub struct Imported {
     pub scene: Option<Scene>,
     /// Everything worth saying, in source order.
     pub diagnostics: Diagnostics,
+}
+
+impl Imported {
+    /// The scene if nothing was wrong with it, and all messages.
+    pub(crate) fn finish(builder: SceneBuilder, mut diagnostics: Diagnostics) -> Self {
+        if diagnostics.has_errors() {
+            return Self::failed(diagnostics);
+        }
+        match builder.build() {
+            Ok(scene) => Self {
+                scene: Some(scene),
+                diagnostics,
+            },
+            Err(errors) => {
+                for error in errors {
+                    diagnostics.error(None, error.to_string());
+                }
+                Self::failed(diagnostics)
+            }
+        }
+    }
+
+    /// No scene, only messages.
+    pub(crate) const fn failed(diagnostics: Diagnostics) -> Self {
+        Self {
+            scene: None,
+            diagnostics,
+        }
+    }
 }

@@ -79,19 +79,66 @@ impl Camera {
         })
     }
 
-    /// A pinhole that shows all of `bounds`, seen along `direction` (any length).
+    /// A pinhole that shows all of `bounds`, seen along `direction` (any length), as near as it
+    /// can be with a small margin, in any picture that is not higher than wide.
     ///
     /// `None` for an empty or unbounded box, or where `up` points along `direction`.
     #[must_use]
     pub fn view_all(bounds: &Aabb, direction: DVec3, up: DVec3, vertical_fov: f64) -> Option<Self> {
+        /// Share of the picture that the box may take.
+        const FILL: f64 = 0.92;
         if bounds.is_empty() || !bounds.is_bounded() {
             return None;
         }
-        let radius = 0.5 * bounds.diagonal();
-        let radius = if radius > 0.0 { radius } else { 1.0 };
         let center = bounds.center();
-        let distance = radius / libm::sin(0.5 * vertical_fov);
-        let eye = center - direction.try_normalize()? * distance;
-        Self::look_at(eye, center, up, vertical_fov)
+        let forward = direction.try_normalize()?;
+        let mut camera = Self::look_at(center - forward, center, up, vertical_fov)?;
+        let half_height = FILL * libm::tan(0.5 * vertical_fov);
+        let [right, up] = [camera.right, camera.up].map(DVec3::normalize_or_zero);
+        // A corner at height h and depth z behind the centre is seen from the distance d if
+        // h <= (d + z) * half_height.
+        let needed = bounds.corners().map(|corner| {
+            let p = corner - center;
+            p.dot(right).abs().max(p.dot(up).abs()) / half_height - p.dot(forward)
+        });
+        let distance = needed.into_iter().fold(0.0, f64::max);
+        let distance = if distance > 0.0 { distance } else { 1.0 };
+        camera.eye = center - forward * distance;
+        camera.eye.is_finite().then_some(camera)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn view_all_shows_every_corner_and_wastes_little() {
+        for size in [
+            DVec3::ONE,
+            DVec3::new(1e-9, 3.0, 2e-9),
+            DVec3::new(5e8, 1.0, 20.0),
+        ] {
+            let bounds = Aabb::new(DVec3::splat(7.0), DVec3::splat(7.0) + size);
+            for direction in [DVec3::Y, DVec3::new(1.0, -2.0, -0.5), DVec3::NEG_X] {
+                let camera = Camera::view_all(&bounds, direction, DVec3::Z, 0.6).expect("a box");
+                let mut farthest: f64 = 0.0;
+                for corner in bounds.corners() {
+                    let p = corner - camera.eye;
+                    let depth = p.dot(camera.forward);
+                    assert!(depth > 0.0);
+                    for side in [camera.right, camera.up] {
+                        // Offset from the middle of the picture, in pictures.
+                        let offset = p.dot(side) / side.length_squared() / depth;
+                        farthest = farthest.max(offset.abs());
+                    }
+                }
+                assert!(farthest <= 0.5 && farthest > 0.4, "{farthest}");
+            }
+        }
+        let point = Aabb::from_points([DVec3::ONE]);
+        assert!(Camera::view_all(&point, DVec3::Y, DVec3::Z, 0.6).is_some());
+        assert!(Camera::view_all(&Aabb::EMPTY, DVec3::Y, DVec3::Z, 0.6).is_none());
+        assert!(Camera::view_all(&Aabb::ALL, DVec3::Y, DVec3::Z, 0.6).is_none());
     }
 }
