@@ -13,6 +13,9 @@ pub mod ply;
 pub mod pov;
 pub mod stl;
 
+mod polygon;
+mod spelling;
+
 pub use diagnostic::{Diagnostic, Diagnostics, Severity, SourceId, Span};
 pub use files::{Disk, FileSystem, InMemory};
 
