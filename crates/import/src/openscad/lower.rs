@@ -93,7 +93,7 @@ impl<'l> Lowering<'l> {
         }
         let operand = self.operand(statement, around);
         let operand = self.transformed(operand, place, statement.span);
-        let (_, line, _) = self.diagnostics.position(statement.span);
+        let line = self.diagnostics.line(statement.span);
         let name = format!("{} in line {line}", statement.name);
         let shape = match operand {
             Operand::Solid(part) if !part.is_empty() => Shape::Solid(part.solid),
@@ -165,7 +165,10 @@ impl<'l> Lowering<'l> {
                 Operand::Solid(Part::leaf(Solid::empty()))
             }
             Module::FlatShape | Module::FlatOperation => {
-                let message = format!("`{}` is flat, which is not supported", statement.name);
+                let message = format!(
+                    "`{}` is two-dimensional, which is not supported",
+                    statement.name
+                );
                 self.left_out(statement.span, &message);
                 Operand::Flat
             }

@@ -23,6 +23,7 @@ pub(super) fn parse<'text>(
         lexemes: tokens(text),
         at: 0,
         nesting: 0,
+        end_is_reported: false,
         source,
         diagnostics,
     };
@@ -46,6 +47,7 @@ struct Parser<'text, 'd> {
     lexemes: Vec<Lexeme>,
     at: usize,
     nesting: u32,
+    end_is_reported: bool,
     source: SourceId,
     diagnostics: &'d mut Diagnostics,
 }
@@ -235,7 +237,11 @@ impl<'text> Parser<'text, '_> {
             let opening = self.last_span();
             while !self.take(Token::CloseBrace) {
                 if self.peek().is_none() {
-                    return Err(self.error(opening, "this `{` is never closed"));
+                    // Of all blocks that the file ends in, the innermost is named.
+                    if !std::mem::replace(&mut self.end_is_reported, true) {
+                        self.error(opening, "this `{` is never closed");
+                    }
+                    return Err(Reported);
                 }
                 self.statement_or_recover(into);
             }
