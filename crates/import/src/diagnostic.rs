@@ -192,12 +192,21 @@ impl Diagnostics {
         self.errors > 0
     }
 
+    /// The line a span starts in, counted from 1. Unlike [`Diagnostics::position`] it does not
+    /// read the line, so that it can be asked for every statement of a file.
+    #[must_use]
+    pub fn line(&self, span: Span) -> usize {
+        let source = &self.sources[span.source.0 as usize];
+        let start = span.start.min(source.bytes.len());
+        source.line_starts.partition_point(|&s| s <= start)
+    }
+
     /// `(path, line, column)`, both counted from 1, the column in characters.
     #[must_use]
     pub fn position(&self, span: Span) -> (&Path, usize, usize) {
         let source = &self.sources[span.source.0 as usize];
         let start = span.start.min(source.bytes.len());
-        let line = source.line_starts.partition_point(|&s| s <= start);
+        let line = self.line(span);
         let before = &source.bytes[source.line_starts[line - 1]..start];
         (
             &source.path,

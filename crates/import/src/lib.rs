@@ -20,6 +20,9 @@ pub mod stl;
 mod text;
 mod weld;
 
+mod polygon;
+mod spelling;
+
 pub use diagnostic::{Diagnostic, Diagnostics, Severity, SourceId, Span};
 pub use files::{Disk, FileSystem, InMemory};
 pub use load::load;

@@ -1,5 +1,7 @@
 //! Affine transforms, built the way the users' languages state them.
 
+use std::f64::consts::FRAC_1_SQRT_2;
+
 use glam::{DAffine3, DMat3, DVec3};
 
 /// Rotation about the fixed axes by degrees: first x, then y, then z.
@@ -26,20 +28,35 @@ pub fn rotation_degrees(axis: DVec3, degrees: f64) -> DAffine3 {
     DAffine3::from_mat3(DMat3::IDENTITY * cos + cross * sin + outer * (1.0 - cos))
 }
 
-/// Sine and cosine of an angle in degrees, exact at multiples of 90.
+/// Sine and cosine of an angle in degrees, exact to the last bit at multiples of 30 and 45.
+///
+/// Angles that mirror each other give the same bits up to sign: corners of a regular polygon lie
+/// on exactly horizontal and vertical lines.
 #[must_use]
 pub fn sin_cos_degrees(degrees: f64) -> (f64, f64) {
     let turn = degrees % 360.0;
-    let quarter = turn / 90.0;
-    if quarter == libm::trunc(quarter) {
-        return match (quarter as i32).rem_euclid(4) {
-            0 => (0.0, 1.0),
-            1 => (1.0, 0.0),
-            2 => (0.0, -1.0),
-            _ => (-1.0, 0.0),
-        };
+    if !turn.is_finite() {
+        return (f64::NAN, f64::NAN);
     }
-    libm::sincos(turn.to_radians())
+    let size = turn.abs();
+    // The cosine is the same on the upper half of the circle, its size also on the right of that.
+    let half = if size > 180.0 { 360.0 - size } else { size };
+    let acute = if half > 90.0 { 180.0 - half } else { half };
+    let (sin, cos) = match acute {
+        0.0 => (0.0, 1.0),
+        30.0 => (0.5, 0.75_f64.sqrt()),
+        45.0 => (FRAC_1_SQRT_2, FRAC_1_SQRT_2),
+        60.0 => (0.75_f64.sqrt(), 0.5),
+        90.0 => (1.0, 0.0),
+        _ if acute > 45.0 => {
+            let (cos, sin) = libm::sincos((90.0 - acute).to_radians());
+            (sin, cos)
+        }
+        _ => libm::sincos(acute.to_radians()),
+    };
+    let below = (turn < 0.0) != (size > 180.0);
+    let sign = |negative: bool, x: f64| if negative && x != 0.0 { -x } else { x };
+    (sign(below, sin), sign(half > 90.0, cos))
 }
 
 /// Reflection in the plane through the origin with this normal (any non-zero length).
@@ -83,6 +100,23 @@ mod tests {
         let m = rotation_xyz_degrees(DVec3::new(90.0, 90.0, 0.0));
         // y -> z by the turn about x, z -> x by the turn about y.
         assert_eq!(m.transform_vector3(DVec3::Y), DVec3::X);
+    }
+
+    #[test]
+    fn mirrored_angles_have_the_same_bits() {
+        for eighth in -5760..=5760 {
+            let degrees = f64::from(eighth) / 8.0;
+            let (sin, cos) = sin_cos_degrees(degrees);
+            let (exact_sin, exact_cos) = degrees.to_radians().sin_cos();
+            assert!((sin - exact_sin).abs() < 1e-14, "sin {degrees}");
+            assert!((cos - exact_cos).abs() < 1e-14, "cos {degrees}");
+            assert_eq!(sin_cos_degrees(180.0 - degrees), (sin, -cos), "{degrees}");
+            assert_eq!(sin_cos_degrees(-degrees), (-sin, cos), "{degrees}");
+        }
+        assert_eq!(sin_cos_degrees(150.0).0, 0.5);
+        assert_eq!(sin_cos_degrees(-240.0).1, -0.5);
+        assert_eq!(sin_cos_degrees(45.0).0, sin_cos_degrees(45.0).1);
+        assert!(sin_cos_degrees(f64::INFINITY).0.is_nan());
     }
 
     #[test]
