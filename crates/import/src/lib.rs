@@ -20,7 +20,6 @@ pub mod stl;
 mod text;
 mod weld;
 
-mod polygon;
 mod spelling;
 
 pub use diagnostic::{Diagnostic, Diagnostics, Severity, SourceId, Span};
