@@ -8,6 +8,7 @@ mod camera;
 mod light;
 mod material;
 mod object;
+mod srgb;
 
 pub use builder::{Scene, SceneBuilder, SceneError, Settings};
 pub use camera::{Camera, Projection};
@@ -16,6 +17,7 @@ pub use material::{
     Background, Color, ColorStop, Finish, Interior, Material, Pattern, Pigment, Reflection,
 };
 pub use object::{Object, ObjectId, Shape};
+pub use srgb::{linear_to_srgb, srgb_to_linear};
 
 pub use octray_geometry::MaterialId;
 
