@@ -21,6 +21,11 @@ use crate::solid::Solid;
 pub(crate) struct Scene {
     builder: SceneBuilder,
     diagnostics: Vec<Diagnostic>,
+    /// A scene file keeps the lights it has, or its darkness.
+    imported: bool,
+    /// Counts the changes, so that a world made meanwhile is known to be stale.
+    revision: u64,
+    prepared: Option<Prepared>,
 }
 
 impl Scene {
@@ -28,35 +33,65 @@ impl Scene {
         Self {
             builder: scene.into_builder(),
             diagnostics,
+            imported: true,
+            ..Self::default()
         }
     }
 
-    /// The scene as it stands, validated.
-    pub(crate) fn build(&self, py: Python<'_>) -> PyResult<scene::Scene> {
-        self.builder
-            .clone()
-            .build()
-            .map_err(|errors: Vec<SceneError>| invalid_scene(py, &errors))
+    /// The scene as it stands, validated, with what a picture needs and it lacks.
+    pub(crate) fn complete(&self, py: Python<'_>) -> PyResult<scene::Scene> {
+        let built = self.builder.clone().build();
+        let plain = built.map_err(|errors: Vec<SceneError>| invalid_scene(py, &errors))?;
+        Ok(completed(plain, !self.imported))
     }
 
-    fn material_id(&mut self, given: Option<&Bound<'_, PyAny>>) -> PyResult<MaterialId> {
-        let wanted = match given {
-            Some(object) if !object.is_none() => material(object)?,
-            _ => scene::Material::default(),
-        };
+    pub(crate) fn settings(&self) -> &Settings {
+        self.builder.so_far().settings()
+    }
+
+    pub(crate) fn own_camera(&self) -> Option<scene::Camera> {
+        self.builder.so_far().camera().copied()
+    }
+
+    pub(crate) const fn revision(&self) -> u64 {
+        self.revision
+    }
+
+    pub(crate) fn prepared(&self, accel: Accel) -> Option<&Prepared> {
+        self.prepared.as_ref().filter(|p| p.accel == accel)
+    }
+
+    pub(crate) fn keep(&mut self, prepared: Prepared) {
+        self.prepared = Some(prepared);
+    }
+
+    fn material_id(&mut self, wanted: scene::Material) -> MaterialId {
         let known = self.builder.so_far().materials();
-        Ok(match known.iter().position(|m| *m == wanted) {
+        match known.iter().position(|m| *m == wanted) {
             Some(index) => MaterialId(index as u32),
             None => self.builder.add_material(wanted),
-        })
+        }
     }
 
-    fn name_for(&self, given: Option<String>, kind: &str) -> String {
-        given.unwrap_or_else(|| format!("{kind} {}", self.builder.so_far().objects().len()))
-    }
-
+    /// The builder, for a change that a world made before does not know of.
     fn changed(&mut self) -> &mut SceneBuilder {
+        self.revision += 1;
+        self.prepared = None;
         &mut self.builder
+    }
+
+    fn add_named(&mut self, mut object: Object, common: &Common<'_, '_>) -> PyResult<u32> {
+        if let Some(name) = common.name {
+            name.clone_into(&mut object.name);
+        } else if object.name.is_empty() {
+            object.name = format!("object {}", self.builder.so_far().objects().len());
+        }
+        if let Some(given) = common.material.filter(|m| !m.is_none()) {
+            object.material = self.material_id(material(given)?);
+        }
+        object.priority = common.priority;
+        object.casts_shadows = common.shadows;
+        Ok(self.changed().add_object(object).0)
     }
 }
 
@@ -81,7 +116,7 @@ impl Scene {
     fn add(
         &mut self,
         solid: &Bound<'_, PyAny>,
-        name: Option<String>,
+        name: Option<&str>,
         material: Option<&Bound<'_, PyAny>>,
         priority: i32,
         shadows: bool,
@@ -91,14 +126,60 @@ impl Scene {
                 "expected a solid; meshes are added with add_mesh, lights with add_light",
             )
         })?;
-        let material = self.material_id(material)?;
-        let name = self.name_for(name, "solid");
-        let object = Object {
+        let id = self.material_id(dress::default_material());
+        let object = Object::solid("", solid.get().inner().clone(), id);
+        let common = Common {
+            name,
+            material,
             priority,
-            casts_shadows: shadows,
-            ..Object::solid(name, solid.get().inner().clone(), material)
+            shadows,
         };
-        Ok(self.changed().add_object(object).0)
+        self.add_named(object, &common)
+    }
+
+    /// Adds a mesh: the path of a mesh file, a pair (vertices, faces), or anything that has
+    /// `.vertices` and `.faces`. With `solid` its inside is filled, and it must be closed.
+    /// Returns the object's id; the objects of a file that holds several follow one another.
+    #[pyo3(signature = (
+        mesh, *, name = None, material = None, solid = false, priority = 0, shadows = true
+    ))]
+    #[expect(clippy::too_many_arguments, reason = "all but the first by keyword")]
+    fn add_mesh(
+        &mut self,
+        mesh: &Bound<'_, PyAny>,
+        name: Option<&str>,
+        material: Option<&Bound<'_, PyAny>>,
+        solid: bool,
+        priority: i32,
+        shadows: bool,
+    ) -> PyResult<u32> {
+        let common = Common {
+            name,
+            material,
+            priority,
+            shadows,
+        };
+        let parts = mesh::parts(mesh)?;
+        self.diagnostics.extend(parts.diagnostics);
+        let mut first = None;
+        for part in parts.meshes {
+            let ids: Vec<MaterialId> = part
+                .materials
+                .into_iter()
+                .map(|m| self.material_id(m))
+                .collect();
+            let (triangles, material) = part.mesh.with_ids(&ids, common.material.is_some())?;
+            let material = material.unwrap_or_else(|| self.material_id(dress::default_material()));
+            let object = if solid {
+                let filled = octray::geometry::Solid::mesh(triangles).map_err(value_error)?;
+                Object::solid(part.name, filled, material)
+            } else {
+                Object::sheet(part.name, Sheet::mesh(triangles), material)
+            };
+            let id = self.add_named(object, &common)?;
+            first.get_or_insert(id);
+        }
+        first.ok_or_else(|| PyValueError::new_err("the file has no mesh in it"))
     }
 
     /// Adds a light.
