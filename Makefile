@@ -1,0 +1,66 @@
+# `make demo` and `make test` are all one needs; each sets up what it uses, into .venv.
+
+PYTHON ?= python3
+OUT := out
+DEMO := scenes/workbench/workbench.pov
+
+# rustup puts cargo here; a shell started before the installation does not know it yet.
+export PATH := $(PATH):$(HOME)/.cargo/bin
+export PIP_DISABLE_PIP_VERSION_CHECK := 1
+
+BIN := .venv/bin
+RUST_SOURCES := $(shell find crates -name '*.rs' -o -name Cargo.toml) Cargo.toml Cargo.lock
+
+.PHONY: help demo test test-rust test-python lint setup clean toolchain
+.DELETE_ON_ERROR:
+
+help: ## Print this list
+	@grep -hE '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | sed -E 's/^([a-z-]+):.*## /\1\t/' | expand -t 14
+
+demo: .venv/installed ## Set up and render the demo scene to out/workbench.png
+	@mkdir -p $(OUT)
+	$(BIN)/octray render $(DEMO) -o $(OUT)/workbench.png
+
+test: test-rust test-python ## Set up and run all tests, Rust and Python
+
+test-rust: toolchain
+	cargo test --workspace
+
+test-python: .venv/tools
+	$(BIN)/pytest
+
+lint: .venv/tools ## Check formatting, lints and types of both languages
+	cargo fmt --all --check
+	cargo clippy --workspace --all-targets -- -D warnings
+	$(BIN)/ruff check
+	$(BIN)/ruff format --check
+	$(BIN)/mypy
+	$(BIN)/python -m mypy.stubtest octray._core
+
+setup: .venv/tools ## Install octray and the tools of its developers into .venv
+
+clean: ## Remove everything that was made here
+	rm -rf .venv $(OUT) target python/octray/*.so
+
+toolchain:
+	@PYTHON='$(PYTHON)' tools/check-toolchain
+
+# The check comes first, whenever anything has to be made.
+.venv/python: tools/check-toolchain
+	@PYTHON='$(PYTHON)' tools/check-toolchain
+	$(PYTHON) -m venv .venv
+	$(BIN)/pip install --quiet 'maturin>=1.9,<2'
+	@touch $@
+
+# The compiled crates stay in target/, so a second build makes only what changed.
+DEVELOP := VIRTUAL_ENV='$(CURDIR)/.venv' $(BIN)/maturin develop --release
+
+.venv/installed: .venv/python pyproject.toml $(RUST_SOURCES)
+	@tools/check-toolchain --rust
+	@echo 'Building octray; the first time takes a few minutes.'
+	$(DEVELOP)
+	@touch $@
+
+.venv/tools: .venv/installed pyproject.toml
+	$(DEVELOP) --extras dev
+	@touch $@

@@ -1,0 +1,45 @@
+//! The Python module `octray._core`: converts arguments, releases the interpreter, calls the
+//! `octray` crate, converts results. Nothing is decided here.
+
+mod arrays;
+mod camera;
+mod convert;
+mod describe;
+mod diagnostics;
+mod light;
+mod load;
+mod material;
+mod mesh;
+mod scene;
+mod solid;
+
+use pyo3::pymodule;
+
+/// The compiled core of octray; use it through the package `octray`.
+#[pymodule(gil_used = false)]
+mod _core {
+    #[pymodule_export]
+    use super::camera::Camera;
+    #[pymodule_export]
+    use super::diagnostics::{Diagnostic, SceneError};
+    #[pymodule_export]
+    use super::light::{DirectionalLight, Light, PointLight, SpotLight};
+    #[pymodule_export]
+    use super::load::load;
+    #[pymodule_export]
+    use super::material::Material;
+    #[pymodule_export]
+    use super::scene::Scene;
+    #[pymodule_export]
+    use super::solid::{
+        Solid, cone, cuboid, cylinder, difference, empty, half_space, intersection, mesh_solid,
+        polyhedron, sphere, torus, union,
+    };
+
+    use pyo3::prelude::*;
+
+    #[pymodule_init]
+    fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {
+        module.add("__version__", env!("CARGO_PKG_VERSION"))
+    }
+}

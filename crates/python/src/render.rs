@@ -1,0 +1,262 @@
+//! Rendering from Python: arguments, progress, Ctrl-C, the report.
+
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::time::{Duration, Instant};
+
+use octray::render::{Crop, Observer, Plan, RenderConfig, RenderJob, Rendering};
+use octray::scene::{Camera, Settings, View};
+use octray::world::World;
+use pyo3::exceptions::{PyKeyboardInterrupt, PyValueError};
+use pyo3::prelude::*;
+
+use crate::convert::value_error;
+use crate::image::{Image, view_named};
+use crate::pool::pool;
+use crate::report;
+use crate::scene::Scene;
+use crate::task::{Event, Task};
+use crate::world::prepared;
+
+/// The arguments of `Scene.render` as they come.
+#[derive(Debug)]
+pub(crate) struct Request<'a, 'py> {
+    pub(crate) size: Option<(u32, u32)>,
+    pub(crate) spp: u32,
+    pub(crate) threads: Option<usize>,
+    pub(crate) accel: &'a str,
+    pub(crate) crop: Option<(u32, u32, u32, u32)>,
+    pub(crate) view: Option<&'a str>,
+    pub(crate) max_depth: Option<u32>,
+    pub(crate) threshold: Option<f64>,
+    pub(crate) seed: u64,
+    pub(crate) progress: Option<&'a Bound<'py, PyAny>>,
+    pub(crate) preview: Option<&'a Bound<'py, PyAny>>,
+    pub(crate) on_interrupt: &'a str,
+}
+
+/// Pictures of scenes that name no size.
+pub(crate) const DEFAULT_SIZE: (u32, u32) = (1280, 720);
+
+impl Request<'_, '_> {
+    fn config(&self, settings: &Settings) -> PyResult<RenderConfig> {
+        let crop = match self.crop {
+            None => None,
+            Some((x0, y0, x1, y1)) if x0 < x1 && y0 < y1 => Some(Crop {
+                x: x0,
+                y: y0,
+                width: x1 - x0,
+                height: y1 - y0,
+            }),
+            Some(crop) => {
+                return Err(PyValueError::new_err(format!(
+                    "crop must be (x0, y0, x1, y1) with x0 < x1 and y0 < y1, not {crop:?}"
+                )));
+            }
+        };
+        Ok(RenderConfig {
+            size: self.size.or(settings.size).or(Some(DEFAULT_SIZE)),
+            spp: self.spp,
+            crop,
+            max_generations: self.max_depth,
+            contribution_threshold: self.threshold,
+            seed: self.seed,
+            progressive: self.preview.is_some(),
+            ..RenderConfig::default()
+        })
+    }
+
+    fn keeps_partial(&self) -> PyResult<bool> {
+        match self.on_interrupt {
+            "raise" => Ok(false),
+            "return" => Ok(true),
+            other => Err(PyValueError::new_err(format!(
+                "on_interrupt must be \"raise\" or \"return\", not {other:?}"
+            ))),
+        }
+    }
+}
+
+/// Checks what can be checked without a scene; nothing is allocated.
+pub(crate) fn check(request: &Request<'_, '_>) -> PyResult<Plan> {
+    request.keeps_partial()?;
+    crate::world::accel_named(request.accel)?;
+    request.view.map(view_named).transpose()?;
+    let settings = Settings::default();
+    let config = request.config(&settings)?;
+    config.plan(&settings).map_err(value_error)
+}
+
+/// Passes progress out of, and the wish to stop into, the threads that render.
+struct Watch<'a> {
+    cancel: &'a AtomicBool,
+    done: &'a AtomicU64,
+    total: &'a AtomicU64,
+}
+
+impl Observer for Watch<'_> {
+    fn progress(&self, done: u64, total: u64) {
+        self.total.store(total, Ordering::Relaxed);
+        self.done.store(done, Ordering::Relaxed);
+    }
+
+    fn cancelled(&self) -> bool {
+        self.cancel.load(Ordering::Relaxed)
+    }
+}
+
+/// Everything the thread that renders needs.
+struct Job {
+    world: Arc<World>,
+    camera: Option<Camera>,
+    config: RenderConfig,
+    pool: Arc<rayon::ThreadPool>,
+    done: Arc<AtomicU64>,
+    total: Arc<AtomicU64>,
+}
+
+type Outcome = Result<(Rendering, Duration), octray::render::RenderError>;
+
+impl Job {
+    fn run(
+        &self,
+        cancel: &AtomicBool,
+        send: &dyn Fn(octray::render::Image),
+    ) -> Outcome {
+        let watch = Watch {
+            cancel,
+            done: &self.done,
+            total: &self.total,
+        };
+        let start = Instant::now();
+        let mut job = RenderJob::new(&self.world, self.camera.as_ref(), &self.config)?;
+        while self.pool.install(|| job.run_pass(&watch)) {
+            send(job.preview());
+        }
+        Ok((job.finish(), start.elapsed()))
+    }
+}
+
+/// Renders the scene.
+pub(crate) fn render(scene: &Bound<'_, Scene>, request: &Request<'_, '_>) -> PyResult<Image> {
+    let py = scene.py();
+    let keeps_partial = request.keeps_partial()?;
+    let view = request.view.map(view_named).transpose()?;
+    let (settings, camera) = {
+        let scene = scene.try_borrow()?;
+        (scene.settings().clone(), scene.own_camera())
+    };
+    let config = request.config(&settings)?;
+    config.plan(&settings).map_err(value_error)?;
+    let view = view.unwrap_or(settings.view);
+    let prepared = prepared(scene, request.accel, request.threads)?;
+
+    let pool = pool(request.threads)?;
+    let threads = pool.current_num_threads();
+    let (done, total) = (Arc::new(AtomicU64::new(0)), Arc::new(AtomicU64::new(0)));
+    let job = Job {
+        world: Arc::clone(&prepared.world),
+        camera,
+        config,
+        pool,
+        done: Arc::clone(&done),
+        total: Arc::clone(&total),
+    };
+    let mut task: Task<Outcome, _> = Task::start(move |cancel, send| job.run(cancel, send))?;
+
+    let watcher = Watcher::new(request, view)?;
+    let mut stopped = None;
+    let outcome = loop {
+        let event = task.next(py)?;
+        let told = match event {
+            Event::Result(outcome) => break outcome,
+            _ if stopped.is_some() => continue,
+            Event::Message(image) => watcher.preview(py, image),
+            Event::Tick => {
+                let share = done.load(Ordering::Relaxed) as f64
+                    / total.load(Ordering::Relaxed).max(1) as f64;
+                py.check_signals().and_then(|()| watcher.progress(share))
+            }
+        };
+        if let Err(error) = told {
+            task.cancel();
+            stopped = Some(error);
+        }
+    };
+    let (rendering, duration) = outcome.map_err(value_error)?;
+    match stopped {
+        Some(error) if !(keeps_partial && error.is_instance_of::<PyKeyboardInterrupt>(py)) => {
+            return Err(error);
+        }
+        Some(_) => {}
+        None => watcher.progress(1.0)?,
+    }
+    let report = report::rendering(py, &rendering, &prepared, duration, threads)?;
+    let complete = rendering.is_complete();
+    let picture = py.detach(|| {
+        if complete {
+            rendering.image()
+        } else {
+            rendering.coarse_image()
+        }
+    });
+    Ok(Image::new(picture, view, complete, Some(report)))
+}
+
+/// The Python functions that want to know how far it is.
+struct Watcher<'py> {
+    progress: Option<Bound<'py, PyAny>>,
+    preview: Option<Bound<'py, PyAny>>,
+    bar: Option<Bound<'py, PyAny>>,
+    view: View,
+}
+
+impl<'py> Watcher<'py> {
+    fn new(request: &Request<'_, 'py>, view: View) -> PyResult<Self> {
+        let mut progress = request.progress.cloned().filter(|p| !p.is_none());
+        let mut bar = None;
+        if let Some(given) = &progress
+            && let Ok(wanted) = given.extract::<bool>()
+        {
+            progress = None;
+            if wanted {
+                let module = given.py().import("octray.cli.progress")?;
+                let made = module.call_method1("Progress", ("render", "auto"))?;
+                made.call_method0("__enter__")?;
+                bar = Some(made.clone());
+                progress = Some(made);
+            }
+        }
+        Ok(Self {
+            progress,
+            preview: request.preview.cloned().filter(|p| !p.is_none()),
+            bar,
+            view,
+        })
+    }
+
+    fn progress(&self, share: f64) -> PyResult<()> {
+        if let Some(progress) = &self.progress {
+            progress.call1((share,))?;
+        }
+        Ok(())
+    }
+
+    fn preview(&self, py: Python<'py>, image: octray::render::Image) -> PyResult<()> {
+        if let Some(preview) = &self.preview {
+            let image = Image::new(image, self.view, false, None);
+            preview.call1((Bound::new(py, image)?,))?;
+        }
+        Ok(())
+    }
+}
+
+impl Drop for Watcher<'_> {
+    fn drop(&mut self) {
+        if let Some(bar) = &self.bar {
+            let py = bar.py();
+            // Only the line on the terminal is at stake here.
+            let _ = bar.call_method1("__exit__", (py.None(), py.None(), py.None()));
+        }
+    }
+}

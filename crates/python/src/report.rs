@@ -1,0 +1,94 @@
+//! What a rendering cost, as a dictionary for the user and for `--json`.
+
+use std::time::Duration;
+
+use octray::render::{RayCounts, Rendering};
+use octray::world::{CellTreeStats, WideTreeStats};
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+
+use crate::world::Prepared;
+
+fn rays<'py>(py: Python<'py>, counts: &RayCounts) -> PyResult<Bound<'py, PyDict>> {
+    let dict = PyDict::new(py);
+    dict.set_item("primary", counts.primary)?;
+    dict.set_item("reflected", counts.reflected)?;
+    dict.set_item("refracted", counts.refracted)?;
+    dict.set_item("shadow", counts.shadow)?;
+    dict.set_item("total", counts.total())?;
+    Ok(dict)
+}
+
+fn cells<'py>(py: Python<'py>, stats: &CellTreeStats) -> PyResult<Bound<'py, PyDict>> {
+    let dict = PyDict::new(py);
+    dict.set_item("empty", stats.empty)?;
+    dict.set_item("occupied", stats.occupied)?;
+    dict.set_item("divided", stats.divided)?;
+    dict.set_item("depth", stats.depth)?;
+    dict.set_item("bytes", stats.bytes)?;
+    dict.set_item("stopped_by_depth", stats.stopped_by_depth)?;
+    dict.set_item("stopped_by_memory", stats.stopped_by_memory)?;
+    Ok(dict)
+}
+
+fn wide<'py>(py: Python<'py>, stats: &WideTreeStats) -> PyResult<Bound<'py, PyDict>> {
+    let dict = PyDict::new(py);
+    let _ = stats;
+    Ok(dict)
+}
+
+/// Seconds, rays, tests per ray, trees, memory.
+pub(crate) fn rendering(
+    py: Python<'_>,
+    rendering: &Rendering,
+    prepared: &Prepared,
+    render: Duration,
+    threads: usize,
+) -> PyResult<Py<PyDict>> {
+    let report = PyDict::new(py);
+    let plan = &rendering.plan;
+    report.set_item("size", plan.size)?;
+    let crop = plan.crop;
+    report.set_item("crop", (crop.x, crop.y, crop.x + crop.width, crop.y + crop.height))?;
+    report.set_item("spp", plan.spp)?;
+    report.set_item("max_depth", plan.max_generations)?;
+    report.set_item("contribution_threshold", plan.contribution_threshold)?;
+    report.set_item("threads", threads)?;
+    report.set_item("complete", rendering.is_complete())?;
+
+    let phases = PyDict::new(py);
+    phases.set_item("build_s", prepared.duration.as_secs_f64())?;
+    phases.set_item("render_s", render.as_secs_f64())?;
+    report.set_item("phases", phases)?;
+
+    let stats = &rendering.stats;
+    report.set_item("rays", rays(py, &stats.rays)?)?;
+    report.set_item("hits", rays(py, &stats.hits)?)?;
+    let queries = &stats.queries;
+    let per_ray = |count: u64| count as f64 / stats.rays.total().max(1) as f64;
+    let tests = PyDict::new(py);
+    tests.set_item("surfaces", per_ray(queries.surface_tests))?;
+    tests.set_item("triangles", per_ray(queries.triangle_tests))?;
+    tests.set_item("cells", per_ray(queries.cells))?;
+    tests.set_item("nodes", per_ray(queries.nodes))?;
+    report.set_item("tests_per_ray", tests)?;
+    report.set_item("replaced_contributions", stats.replaced_contributions)?;
+    report.set_item("ended_by_generation", stats.ended_by_generation)?;
+    report.set_item("ended_by_contribution", stats.ended_by_contribution)?;
+
+    let world = prepared.world.stats();
+    let trees = PyDict::new(py);
+    let cell_tree = world.cells.as_ref().map(|s| cells(py, s)).transpose()?;
+    trees.set_item("cells", cell_tree)?;
+    let wide_tree = world.wide.as_ref().map(|s| wide(py, s)).transpose()?;
+    trees.set_item("wide", wide_tree)?;
+    report.set_item("trees", trees)?;
+    let built = PyDict::new(py);
+    built.set_item("objects", world.objects)?;
+    built.set_item("surfaces", world.surfaces)?;
+    built.set_item("merged_surfaces", world.merged_surfaces)?;
+    built.set_item("faces", world.faces)?;
+    built.set_item("triangles", world.triangles)?;
+    report.set_item("world", built)?;
+    Ok(report.unbind())
+}

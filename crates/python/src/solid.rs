@@ -1,0 +1,323 @@
+//! Solids: every operation returns a new one.
+
+use std::sync::Arc;
+
+use octray::geometry::{ConvexPolyhedron, ShapeError, SolidNode, TriangleMesh};
+use octray::math::{DAffine3, DVec3, transform};
+use pyo3::exceptions::{PyTypeError, PyValueError};
+use pyo3::prelude::*;
+use pyo3::types::PyTuple;
+
+use crate::convert::{affine, number_or_vector, value_error, vector};
+use crate::mesh;
+
+/// An exact solid: a primitive, a closed mesh, or a set operation on solids.
+#[pyclass(frozen, module = "octray")]
+#[derive(Clone, Debug)]
+pub(crate) struct Solid {
+    inner: octray::geometry::Solid,
+    /// Levels of the expression, and leaves when shared parts count every time they are used.
+    depth: u32,
+    operands: u64,
+}
+
+/// Deeper nesting than any hand or program makes on purpose; it keeps recursive walks of the
+/// expression well within the stack of a thread.
+const MAX_DEPTH: u32 = 1000;
+
+/// More operands than memory has room for: copies share their storage in Python, but are places
+/// of their own in the world, so doubling 30 times is quickly written and never finished.
+const MAX_OPERANDS: u64 = 1 << 24;
+
+fn checked(result: Result<octray::geometry::Solid, ShapeError>) -> PyResult<Solid> {
+    result.map(Solid::leaf).map_err(value_error)
+}
+
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Operation {
+    Union,
+    Intersection,
+    Difference,
+}
+
+impl Solid {
+    pub(crate) const fn leaf(inner: octray::geometry::Solid) -> Self {
+        Self {
+            inner,
+            depth: 1,
+            operands: 1,
+        }
+    }
+
+    pub(crate) const fn inner(&self) -> &octray::geometry::Solid {
+        &self.inner
+    }
+
+    fn limited(inner: octray::geometry::Solid, depth: u32, operands: u64) -> PyResult<Self> {
+        if depth > MAX_DEPTH {
+            return Err(PyValueError::new_err(format!(
+                "the solid is nested more than {MAX_DEPTH} operations deep; octray.union([...]) \
+                 and octray.difference(a, b, c, ...) take any number of operands in one step"
+            )));
+        }
+        if operands > MAX_OPERANDS {
+            return Err(PyValueError::new_err(format!(
+                "the solid has {operands} operands; at most {MAX_OPERANDS} are supported"
+            )));
+        }
+        Ok(Self {
+            inner,
+            depth,
+            operands,
+        })
+    }
+
+    /// `first operation rest`; a chain such as `a + b + c` stays one flat node.
+    fn combine(operation: Operation, first: &Self, rest: &[Self]) -> PyResult<Self> {
+        let count = rest
+            .iter()
+            .fold(first.operands, |sum, s| sum.saturating_add(s.operands));
+        let (mut operands, below) = match (operation, first.inner.node()) {
+            (Operation::Union, SolidNode::Union(all))
+            | (Operation::Intersection, SolidNode::Intersection(all))
+            | (Operation::Difference, SolidNode::Difference(all)) => (all.clone(), first.depth - 1),
+            _ => (vec![first.inner.clone()], first.depth),
+        };
+        operands.extend(rest.iter().map(|s| s.inner.clone()));
+        let below = rest.iter().map(|s| s.depth).fold(below, u32::max);
+        let inner = match operation {
+            Operation::Union => octray::geometry::Solid::union(operands),
+            Operation::Intersection => octray::geometry::Solid::intersection(operands),
+            Operation::Difference => octray::geometry::Solid::difference(operands),
+        };
+        Self::limited(inner, below + 1, count)
+    }
+
+    fn moved(&self, parent_from_child: DAffine3) -> PyResult<Self> {
+        let inner = self
+            .inner
+            .transform(parent_from_child)
+            .map_err(value_error)?;
+        // A move of a move is one node.
+        let merged = matches!(self.inner.node(), SolidNode::Transformed { .. });
+        Self::limited(inner, self.depth + u32::from(!merged), self.operands)
+    }
+}
+
+#[pymethods]
+impl Solid {
+    fn __add__(&self, other: &Self) -> PyResult<Self> {
+        Self::combine(Operation::Union, self, std::slice::from_ref(other))
+    }
+
+    fn __sub__(&self, other: &Self) -> PyResult<Self> {
+        Self::combine(Operation::Difference, self, std::slice::from_ref(other))
+    }
+
+    fn __and__(&self, other: &Self) -> PyResult<Self> {
+        Self::combine(Operation::Intersection, self, std::slice::from_ref(other))
+    }
+
+    fn __invert__(&self) -> PyResult<Self> {
+        self.complement()
+    }
+
+    /// The points that are not in this solid.
+    fn complement(&self) -> PyResult<Self> {
+        Self::limited(self.inner.complement(), self.depth + 1, self.operands)
+    }
+
+    /// Moved by an offset.
+    #[pyo3(signature = (x = 0.0, y = 0.0, z = 0.0))]
+    fn translate(&self, x: f64, y: f64, z: f64) -> PyResult<Self> {
+        self.moved(DAffine3::from_translation(DVec3::new(x, y, z)))
+    }
+
+    /// Turned by degrees about the fixed axes through the origin: first x, then y, then z.
+    #[pyo3(signature = (x = 0.0, y = 0.0, z = 0.0))]
+    fn rotate(&self, x: f64, y: f64, z: f64) -> PyResult<Self> {
+        self.moved(transform::rotation_xyz_degrees(DVec3::new(x, y, z)))
+    }
+
+    /// Scaled about the origin by one factor, or by one for each axis.
+    fn scale(&self, factor: &Bound<'_, PyAny>) -> PyResult<Self> {
+        self.moved(DAffine3::from_scale(number_or_vector("factor", factor)?))
+    }
+
+    /// Reflected in the plane through the origin with this normal.
+    fn mirror(&self, normal: &Bound<'_, PyAny>) -> PyResult<Self> {
+        let normal = vector("normal", normal)?;
+        if normal == DVec3::ZERO {
+            return Err(value_error(ShapeError::ZeroVector { what: "normal" }));
+        }
+        self.moved(transform::mirror(normal))
+    }
+
+    /// Under an affine map given as a 4x4 matrix by rows.
+    fn transform(&self, matrix: &Bound<'_, PyAny>) -> PyResult<Self> {
+        self.moved(affine(matrix)?)
+    }
+
+    /// A box around the solid as (lowest corner, highest corner): never too small, infinite where
+    /// the solid is unbounded, `None` for an empty one.
+    #[getter]
+    fn bounds(&self) -> Option<([f64; 3], [f64; 3])> {
+        let bounds = self.inner.bounds();
+        (!bounds.is_empty()).then(|| (bounds.min.to_array(), bounds.max.to_array()))
+    }
+
+    fn __repr__(&self) -> String {
+        let kind = match self.inner.node() {
+            SolidNode::Empty => "empty",
+            SolidNode::Primitive(primitive) => crate::describe::primitive_name(primitive),
+            SolidNode::Transformed { .. } => "transformed",
+            SolidNode::WithMaterial { .. } => "painted",
+            SolidNode::Union(_) => "union",
+            SolidNode::Intersection(_) => "intersection",
+            SolidNode::Difference(_) => "difference",
+            SolidNode::Complement(_) => "complement",
+        };
+        format!("<octray.Solid {kind}>")
+    }
+}
+
+/// The solids of one argument list: `f(a, b, c)` or `f([a, b, c])`.
+fn operands(arguments: &Bound<'_, PyTuple>) -> PyResult<Vec<Solid>> {
+    let mut solids = Vec::new();
+    for argument in arguments {
+        if let Ok(solid) = argument.cast::<Solid>() {
+            solids.push(solid.get().clone());
+            continue;
+        }
+        let wrong = || PyTypeError::new_err(format!("expected a solid, not {argument}"));
+        for item in argument.try_iter().map_err(|_| wrong())? {
+            solids.push(item?.cast::<Solid>().map_err(|_| wrong())?.get().clone());
+        }
+    }
+    Ok(solids)
+}
+
+fn folded(operation: Operation, arguments: &Bound<'_, PyTuple>) -> PyResult<Solid> {
+    match operands(arguments)?.split_first() {
+        None => Ok(empty()),
+        Some((first, [])) => Ok(first.clone()),
+        Some((first, rest)) => Solid::combine(operation, first, rest),
+    }
+}
+
+/// The points in any of the solids; of none, the empty solid.
+#[pyfunction]
+#[pyo3(signature = (*solids))]
+pub(crate) fn union(solids: &Bound<'_, PyTuple>) -> PyResult<Solid> {
+    folded(Operation::Union, solids)
+}
+
+/// The points in all of the solids; of none, the empty solid.
+#[pyfunction]
+#[pyo3(signature = (*solids))]
+pub(crate) fn intersection(solids: &Bound<'_, PyTuple>) -> PyResult<Solid> {
+    folded(Operation::Intersection, solids)
+}
+
+/// The points in the first solid and in none of the others; of none, the empty solid.
+#[pyfunction]
+#[pyo3(signature = (*solids))]
+pub(crate) fn difference(solids: &Bound<'_, PyTuple>) -> PyResult<Solid> {
+    folded(Operation::Difference, solids)
+}
+
+/// The solid without points.
+#[pyfunction]
+pub(crate) fn empty() -> Solid {
+    Solid::leaf(octray::geometry::Solid::empty())
+}
+
+/// A box of the given size (a number or three) about the origin, or with a corner there.
+#[pyfunction]
+#[pyo3(name = "box", signature = (size, center = true))]
+pub(crate) fn cuboid(size: &Bound<'_, PyAny>, center: bool) -> PyResult<Solid> {
+    let size = number_or_vector("size", size)?;
+    for (axis, what) in ["size along x", "size along y", "size along z"]
+        .into_iter()
+        .enumerate()
+    {
+        let value = size[axis];
+        if value.is_nan() || value <= 0.0 {
+            return Err(value_error(ShapeError::NotPositive { what, value }));
+        }
+    }
+    let low = if center { size * -0.5 } else { DVec3::ZERO };
+    let high = if center { size * 0.5 } else { size };
+    checked(octray::geometry::Solid::cuboid(low, high))
+}
+
+/// A ball about the origin.
+#[pyfunction]
+pub(crate) fn sphere(r: f64) -> PyResult<Solid> {
+    checked(octray::geometry::Solid::sphere(r))
+}
+
+/// The bottom and top of something of height `h`, about z = 0 or upon it.
+fn z_range(h: f64, center: bool) -> (f64, f64) {
+    if center {
+        (-0.5 * h, 0.5 * h)
+    } else {
+        (0.0, h)
+    }
+}
+
+/// A cylinder about the z axis.
+#[pyfunction]
+#[pyo3(signature = (r, h, center = true))]
+pub(crate) fn cylinder(r: f64, h: f64, center: bool) -> PyResult<Solid> {
+    let (low, high) = z_range(h, center);
+    checked(octray::geometry::Solid::cylinder(r, low, high))
+}
+
+/// A cone or frustum about the z axis: radius `r1` at the bottom, `r2` at the top.
+#[pyfunction]
+#[pyo3(signature = (r1, r2, h, center = true))]
+pub(crate) fn cone(r1: f64, r2: f64, h: f64, center: bool) -> PyResult<Solid> {
+    let (low, high) = z_range(h, center);
+    checked(octray::geometry::Solid::cone(r1, r2, low, high))
+}
+
+/// A torus about the z axis: `R` to the middle of the tube, `r` the tube's own radius.
+#[pyfunction]
+#[pyo3(name = "torus")]
+#[expect(non_snake_case, reason = "R and r are what everyone calls them")]
+pub(crate) fn torus(R: f64, r: f64) -> PyResult<Solid> {
+    checked(octray::geometry::Solid::torus(R, r))
+}
+
+/// The points `p` with `normal . p <= d`, where the normal counts as a unit vector.
+#[pyfunction]
+#[pyo3(signature = (normal, d = 0.0))]
+pub(crate) fn half_space(normal: &Bound<'_, PyAny>, d: f64) -> PyResult<Solid> {
+    let normal = vector("normal", normal)?;
+    checked(octray::geometry::Solid::half_space(normal, d))
+}
+
+/// A convex polyhedron from its corners, shape (N, 3), and its faces: a list of lists of corner
+/// indices in order round the face, either way.
+#[pyfunction]
+pub(crate) fn polyhedron(vertices: &Bound<'_, PyAny>, faces: &Bound<'_, PyAny>) -> PyResult<Solid> {
+    let faces = mesh::polygons(faces)?;
+    let vertices = mesh::positions(vertices)?;
+    let polyhedron = ConvexPolyhedron::from_faces(vertices, &faces).map_err(|error| {
+        PyValueError::new_err(format!(
+            "{error}; octray.mesh_solid takes any closed surface of triangles"
+        ))
+    })?;
+    Ok(Solid::leaf(octray::geometry::Solid::convex(Arc::new(
+        polyhedron,
+    ))))
+}
+
+/// The inside of a closed triangle mesh whose triangles run counter-clockwise seen from outside.
+#[pyfunction]
+#[pyo3(signature = (vertices, faces))]
+pub(crate) fn mesh_solid(vertices: &Bound<'_, PyAny>, faces: &Bound<'_, PyAny>) -> PyResult<Solid> {
+    let mesh: Arc<TriangleMesh> = mesh::from_arrays(vertices, faces)?;
+    checked(octray::geometry::Solid::mesh(mesh))
+}

@@ -1,0 +1,102 @@
+//! The scene made ready for rays, kept until the scene changes.
+
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+use octray::import::dress;
+use octray::math::{Aabb, DVec3};
+use octray::scene;
+use octray::world::{Accel, World, WorldConfig};
+use pyo3::exceptions::{PyRuntimeError, PyValueError};
+use pyo3::prelude::*;
+
+use crate::diagnostics::invalid_scene;
+use crate::pool::pool;
+use crate::scene::Scene;
+use crate::task;
+
+/// A world, and how long it took to make it.
+#[derive(Clone, Debug)]
+pub(crate) struct Prepared {
+    pub(crate) world: Arc<World>,
+    pub(crate) accel: Accel,
+    pub(crate) duration: Duration,
+}
+
+/// The accelerator of this name.
+pub(crate) fn accel_named(name: &str) -> PyResult<Accel> {
+    match name {
+        "auto" => Ok(Accel::Auto),
+        "brute" => Ok(Accel::Brute),
+        _ => Err(PyValueError::new_err(format!(
+            "accel must be \"auto\" or \"brute\", not {name:?}"
+        ))),
+    }
+}
+
+/// The scene's world, made now unless it is still there from last time.
+pub(crate) fn prepared(
+    scene: &Bound<'_, Scene>,
+    accel: &str,
+    threads: Option<usize>,
+) -> PyResult<Prepared> {
+    let py = scene.py();
+    let accel = accel_named(accel)?;
+    let pool = pool(threads)?;
+    let (plain, revision) = {
+        let scene = scene.try_borrow()?;
+        if let Some(known) = scene.prepared(accel) {
+            return Ok(known.clone());
+        }
+        (scene.complete(py)?, scene.revision())
+    };
+    let config = WorldConfig {
+        accel,
+        ..WorldConfig::default()
+    };
+    let start = Instant::now();
+    let world = task::run(py, move |_| {
+        pool.install(|| World::prepare(Arc::new(plain), &config))
+    })?;
+    let world = world.map_err(|error| invalid_scene(py, &[error]))?;
+    let prepared = Prepared {
+        world: Arc::new(world),
+        accel,
+        duration: start.elapsed(),
+    };
+    let mut scene = scene
+        .try_borrow_mut()
+        .map_err(|_| PyRuntimeError::new_err("the scene is in use by another thread"))?;
+    if scene.revision() == revision {
+        scene.keep(prepared.clone());
+    }
+    Ok(prepared)
+}
+
+/// The scene with a camera, and, if `dressed` and it has no lights, with lights about it and a
+/// background where it has none.
+pub(crate) fn completed(scene: scene::Scene, dressed: bool) -> scene::Scene {
+    let own_background = (*scene.background() != scene::Background::default())
+        .then(|| scene.background().clone());
+    let up = scene.settings().up;
+    let mut scene = scene;
+    if scene.camera().is_none() && dress::view_all(&scene.bounds(), up).is_none() {
+        // Nothing to look at, or nothing bounded: look at the middle of the world.
+        let middle = Aabb::new(DVec3::splat(-1.0), DVec3::ONE);
+        if let Some(camera) = dress::view_all(&middle, up) {
+            let mut builder = scene.clone().into_builder();
+            builder.set_camera(camera);
+            scene = builder.build().unwrap_or(scene);
+        }
+    }
+    if !dressed {
+        return dress::add_camera(scene);
+    }
+    let scene = dress::dress(scene);
+    let Some(background) = own_background else {
+        return scene;
+    };
+    let mut builder = scene.clone().into_builder();
+    builder.set_background(background);
+    builder.build().unwrap_or(scene)
+}

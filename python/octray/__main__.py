@@ -1,0 +1,5 @@
+"""``python -m octray`` is the command ``octray``."""
+
+from octray.cli import main
+
+main()

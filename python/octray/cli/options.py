@@ -1,0 +1,56 @@
+"""Option values that click does not know: sizes and crops."""
+
+from __future__ import annotations
+
+import re
+from typing import TYPE_CHECKING
+
+import click
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+    from typing import Any
+
+#: A part of the picture: x0 <= x < x1, y0 <= y < y1 in pixels, row 0 at the top.
+Crop = tuple[int, int, int, int]
+
+
+def parse_size(
+    _ctx: click.Context, _param: click.Parameter, value: str | None
+) -> tuple[int, int] | None:
+    """``WIDTHxHEIGHT`` in pixels. What is too large is decided where pictures are made."""
+    if value is None:
+        return None
+    match = re.fullmatch(r"(\d{1,9})[xX](\d{1,9})", value.strip(), re.ASCII)
+    if match is None:
+        raise click.BadParameter(f"{value!r} is not a size such as 1280x720")
+    width, height = int(match[1]), int(match[2])
+    if width < 1 or height < 1:
+        raise click.BadParameter(f"{value}: a picture has at least one pixel each way")
+    return width, height
+
+
+def parse_crop(_ctx: click.Context, _param: click.Parameter, value: str | None) -> Crop | None:
+    """``x0,y0,x1,y1`` in pixels. Whether it lies in the picture is decided later."""
+    if value is None:
+        return None
+    match = re.fullmatch(r"(\d{1,9}),(\d{1,9}),(\d{1,9}),(\d{1,9})", value.strip(), re.ASCII)
+    if match is None:
+        raise click.BadParameter(f"{value!r} is not a crop such as 100,50,300,200")
+    x0, y0, x1, y1 = (int(number) for number in match.groups())
+    if x0 >= x1 or y0 >= y1:
+        raise click.BadParameter(f"{value}: x0 must be below x1 and y0 below y1")
+    return x0, y0, x1, y1
+
+
+def scene_argument(function: Callable[..., Any]) -> Callable[..., Any]:
+    """Add the argument SCENE and the options about reading it."""
+    for add in (
+        click.option(
+            "--facets", is_flag=True, help="OpenSCAD: faceted solids even where $fn is 0."
+        ),
+        click.option("--strict", is_flag=True, help="Treat warnings as errors."),
+        click.argument("scene"),
+    ):
+        function = add(function)
+    return function
