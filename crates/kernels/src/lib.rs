@@ -1,1 +1,27 @@
-//! kernels
+//! The SIMD room: plain arrays in, masks out.
+//!
+//! A kernel proposes and never decides: what it reports is a superset of the truth, proven in its
+//! documentation. Every kernel has a scalar twin with the same operations in the same order, so
+//! both give the same bits: no fused multiply-add, no reciprocal estimates.
+
+pub mod slab;
+
+pub use fearless_simd::{Level, Simd, dispatch};
+pub use slab::{BoxTest, Boxes8, Scalar, SlabRay, Vector};
+
+/// How kernels run.
+#[derive(Clone, Copy, Debug)]
+pub enum Lanes {
+    /// With the vector instructions of this machine.
+    Vector(Level),
+    /// One lane at a time.
+    Scalar,
+}
+
+impl Lanes {
+    /// The best that this machine offers.
+    #[must_use]
+    pub fn detect() -> Self {
+        Self::Vector(Level::new())
+    }
+}

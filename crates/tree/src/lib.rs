@@ -2,7 +2,11 @@
 //!
 //! [`CellTree`] is a partition of a cube into cells: empty, occupied or divided. What a cell
 //! contains is the business of a [`Subdivide`]; the tree only decides where to divide, and walks.
+//!
+//! [`WideTree`] finds the items whose boxes a line meets, front to back, eight boxes at a time.
 
 pub mod cell_tree;
+pub mod wide_tree;
 
 pub use cell_tree::{Cell, CellTree, CellTreeStats, Criteria, Node, Subdivide, WalkStack};
+pub use wide_tree::{WalkCost, WideTree, WideTreeConfig, WideTreeError, WideTreeStats};

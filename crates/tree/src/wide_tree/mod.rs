@@ -1,0 +1,248 @@
+//! Eight boxes at a time: octree topology with tight bounds.
+//!
+//! The tree is generic over what it holds: it sees a box per item, and names items by their index.
+//! Cells give the splitting planes and the order, boxes do the culling: centres are sorted in
+//! Morton order, cells are halved where they hold items, and nodes of eight are filled with the
+//! parts of largest surface area first. Every item stands in exactly one leaf.
+//!
+//! Bounds are kept in `f32`, relative to the tree's centre, scaled by a power of two to `[-1, 1]`
+//! and rounded outwards. They only rule out; the visitor decides in `f64`. So a search gives the
+//! same answer as trying every item, bit for bit, if the visitor does its part: the point that it
+//! reports for an item must lie in the item's box, up to `2^-43` times the largest coordinate of a
+//! corner of the tree's bounds relative to the ray's origin. (Bounds of items whose parameters are
+//! less accurate must be inflated before the tree is built.)
+
+mod binary;
+mod collapse;
+mod frame;
+#[cfg(test)]
+mod tests;
+mod walk;
+
+use bytemuck::{Pod, Zeroable};
+use octray_kernels::{Boxes8, Lanes};
+use octray_math::Aabb;
+use thiserror::Error;
+
+use binary::{Binary, Key, Source, Subtree};
+use frame::Frame;
+
+pub use walk::WalkCost;
+
+/// No way from the root has more nodes than this plus one, whatever the items.
+const MAX_DEPTH: u32 = 73;
+/// The most items a leaf may hold.
+const LARGEST_LEAF: u32 = 8;
+
+/// How to build.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct WideTreeConfig {
+    /// The most items in a leaf, 1 to 8 (taken as the nearest of these).
+    pub leaf_size: u32,
+    /// Bytes that the tree and its construction may take, the caller's boxes aside.
+    pub memory_limit: u64,
+}
+
+impl Default for WideTreeConfig {
+    fn default() -> Self {
+        Self {
+            leaf_size: 4,
+            memory_limit: 8 << 30,
+        }
+    }
+}
+
+/// Why there is no tree.
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
+pub enum WideTreeError {
+    /// An item extends to infinity.
+    #[error("item {0} is unbounded")]
+    Unbounded(usize),
+    /// Links have 28 bits for an item.
+    #[error("{0} items; a tree holds at most 2^28")]
+    TooMany(usize),
+    /// Known before anything is allocated.
+    #[error("a tree over {items} items may take {needed} bytes, more than the limit of {limit}")]
+    Memory {
+        /// How many items.
+        items: usize,
+        /// Upper bound of the bytes needed.
+        needed: u64,
+        /// Bytes allowed.
+        limit: u64,
+    },
+}
+
+/// Eight children.
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+#[repr(C, align(32))]
+struct WideNode {
+    boxes: Boxes8,
+    links: [u32; 8],
+}
+
+/// What a child is, in one word: the index of a node, or a leaf.
+mod link {
+    use std::ops::Range;
+
+    const LEAF: u32 = 1 << 31;
+    /// Items are counted in the three bits from here on, one less than there are.
+    const COUNT_SHIFT: u32 = 28;
+    pub(super) const MAX_ITEMS: usize = 1 << COUNT_SHIFT;
+
+    pub(super) const fn node(index: usize) -> u32 {
+        index as u32
+    }
+
+    pub(super) const fn leaf(first: u32, count: u32) -> u32 {
+        LEAF | (count - 1) << COUNT_SHIFT | first
+    }
+
+    /// The places of the items of a leaf, `None` for a node.
+    #[inline]
+    pub(super) fn items(word: u32) -> Option<Range<usize>> {
+        if word & LEAF == 0 {
+            return None;
+        }
+        let first = (word & (MAX_ITEMS as u32 - 1)) as usize;
+        Some(first..first + (word >> COUNT_SHIFT & 7) as usize + 1)
+    }
+
+    /// A link to a node whose array was appended to another that had `base` nodes.
+    pub(super) const fn rebased(word: u32, base: usize) -> u32 {
+        if word & LEAF == 0 {
+            word + base as u32
+        } else {
+            word
+        }
+    }
+}
+
+/// Figures about a tree.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct WideTreeStats {
+    /// Items that can be met; empty ones are left out.
+    pub items: u64,
+    /// Nodes of eight children.
+    pub nodes: u64,
+    /// Leaves with at least one item.
+    pub leaves: u64,
+    /// Depth of the deepest node; the root is 0.
+    pub depth: u32,
+    /// Bytes of nodes and items.
+    pub bytes: u64,
+}
+
+/// The tree. It holds indices; the items stay with whoever built it.
+#[derive(Clone, Debug)]
+pub struct WideTree {
+    frame: Frame,
+    nodes: Vec<WideNode>,
+    items: Vec<u32>,
+    bounds: Aabb,
+    stats: WideTreeStats,
+    lanes: Lanes,
+}
+
+impl WideTree {
+    /// A tree over items with these boxes, built in the current thread pool; the same bytes
+    /// whatever its size.
+    ///
+    /// Empty boxes (NaN makes a box empty) are items that no line meets.
+    ///
+    /// # Errors
+    /// A box is unbounded, or there are too many items for the format or for the memory limit.
+    pub fn build(bounds: &[Aabb], config: &WideTreeConfig) -> Result<Self, WideTreeError> {
+        if let Some(item) = bounds.iter().position(|b| !b.is_bounded()) {
+            return Err(WideTreeError::Unbounded(item));
+        }
+        if bounds.len() > link::MAX_ITEMS {
+            return Err(WideTreeError::TooMany(bounds.len()));
+        }
+        let leaf_size = config.leaf_size.clamp(1, LARGEST_LEAF);
+        let needed = Self::memory_bound(bounds.len(), leaf_size);
+        if needed > config.memory_limit {
+            return Err(WideTreeError::Memory {
+                items: bounds.len(),
+                needed,
+                limit: config.memory_limit,
+            });
+        }
+        let whole = bounds
+            .iter()
+            .filter(|b| !b.is_empty())
+            .fold(Aabb::EMPTY, |whole, &b| whole.union(b));
+        let mut tree = Self {
+            frame: Frame::new(&whole),
+            nodes: Vec::new(),
+            items: Vec::new(),
+            bounds: whole,
+            stats: WideTreeStats::default(),
+            lanes: Lanes::detect(),
+        };
+        if whole.is_empty() {
+            return Ok(tree);
+        }
+        let source = Source {
+            bounds,
+            frame: tree.frame,
+            leaf_size,
+        };
+        let indices = (0..bounds.len() as u32).filter(|&i| !bounds[i as usize].is_empty());
+        let binary = Binary::build(indices, &source);
+        (tree.nodes, tree.stats.depth) = collapse::collapse(&binary, leaf_size);
+        tree.items = binary.keys.iter().map(|key| key.item).collect();
+        let links = tree.nodes.iter().flat_map(|node| {
+            let used = node.boxes.planes[0].map(|x| x < f32::INFINITY);
+            node.links.into_iter().zip(used)
+        });
+        let leaves = links.filter(|&(link, used)| used && link::items(link).is_some());
+        tree.stats.leaves = leaves.count() as u64;
+        tree.stats.items = tree.items.len() as u64;
+        tree.stats.nodes = tree.nodes.len() as u64;
+        let [nodes, items] = tree.bytes();
+        tree.stats.bytes = (nodes.len() + items.len()) as u64;
+        Ok(tree)
+    }
+
+    /// The most bytes that building takes at any time.
+    ///
+    /// A node with a free slot has leaves only, as has any last node of a branch: such nodes hold
+    /// more than `leaf_size` items each. All others have eight children, so each adds at least
+    /// seven to the number of branches, and every branch ends in an item of its own. Nodes are
+    /// counted twice because they are copied once.
+    fn memory_bound(items: usize, leaf_size: u32) -> u64 {
+        let n = items as u64;
+        let nodes = n / (u64::from(leaf_size) + 1) + n / 7 + 2;
+        let binary = size_of::<Key>() + size_of::<[Subtree; 2]>() + size_of::<u32>();
+        n * binary as u64 + 2 * nodes * size_of::<WideNode>() as u64
+    }
+
+    /// A box around all items.
+    #[must_use]
+    pub const fn bounds(&self) -> &Aabb {
+        &self.bounds
+    }
+
+    /// Figures about the tree.
+    #[must_use]
+    pub const fn stats(&self) -> &WideTreeStats {
+        &self.stats
+    }
+
+    /// Nodes and items as they lie in memory, for hashing and comparing.
+    #[must_use]
+    pub fn bytes(&self) -> [&[u8]; 2] {
+        [
+            bytemuck::cast_slice(&self.nodes),
+            bytemuck::cast_slice(&self.items),
+        ]
+    }
+
+    /// The same tree with kernels that run as given. No answer depends on it.
+    #[must_use]
+    pub fn with_lanes(mut self, lanes: Lanes) -> Self {
+        self.lanes = lanes;
+        self
+    }
+}

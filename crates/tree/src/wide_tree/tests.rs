@@ -1,0 +1,366 @@
+#![allow(clippy::unwrap_used, reason = "a failed build fails the test")]
+
+use octray_kernels::Lanes;
+use octray_math::{Aabb, DVec3, Interval, Ray, hash_combine, unit_f64};
+
+use super::*;
+
+struct Random(u64, u64);
+
+impl Random {
+    fn unit(&mut self) -> f64 {
+        self.1 += 1;
+        unit_f64(hash_combine(self.0, self.1))
+    }
+
+    fn below(&mut self, n: usize) -> usize {
+        (self.unit() * n as f64) as usize
+    }
+
+    fn point(&mut self, size: f64) -> DVec3 {
+        DVec3::from_array([0; 3].map(|_| size * (2.0 * self.unit() - 1.0)))
+    }
+}
+
+fn around(center: DVec3, half: DVec3) -> Aabb {
+    Aabb::new(center - half.abs(), center + half.abs())
+}
+
+/// Boxes of all kinds, each with what is special about them.
+fn zoo() -> Vec<(&'static str, Vec<Aabb>)> {
+    let mut r = Random(1, 0);
+    let n = 700;
+    let mut scattered = |size: f64, half: f64| -> Vec<Aabb> {
+        (0..n)
+            .map(|_| around(r.point(size), r.point(half)))
+            .collect()
+    };
+    let even = scattered(1.0, 0.05);
+    let tiny = scattered(1e-160, 1e-162);
+    let huge = scattered(1e150, 1e148);
+    let points = scattered(3.0, 0.0);
+    let head = scattered(1e-3, 1e-4);
+    let far = scattered(1.0, 0.1)
+        .into_iter()
+        .map(|b| Aabb::new(b.min + 1e9, b.max + 1e9))
+        .collect();
+    let flat = even
+        .iter()
+        .enumerate()
+        .map(|(i, b)| {
+            let mut b = *b;
+            b.max[i % 3] = b.min[i % 3];
+            b
+        })
+        .collect();
+    let stadium = head
+        .into_iter()
+        .chain(even.iter().map(|b| Aabb::new(b.min * 1e6, b.max * 1e6)))
+        .collect();
+    let grid = (0..512)
+        .map(|i| {
+            let corner = DVec3::new((i & 7).into(), (i >> 3 & 7).into(), (i >> 6).into());
+            Aabb::new(corner, corner + 1.0)
+        })
+        .collect();
+    let nested = (0..n)
+        .map(|i| around(DVec3::ZERO, DVec3::splat(f64::from(i))))
+        .collect();
+    // Each half as large and half as far from the origin as the one before, beyond any grid.
+    let shrinking = (0..n)
+        .map(|i| {
+            let x = libm::ldexp(1.0, -i);
+            around(DVec3::splat(x), DVec3::splat(x * 0.4))
+        })
+        .collect();
+    let same = vec![around(DVec3::X, DVec3::ONE); n as usize];
+    let mut with_empty = even.clone();
+    for i in (0..with_empty.len()).step_by(3) {
+        with_empty[i] = Aabb::EMPTY;
+        with_empty[i / 3].min.y = f64::NAN;
+    }
+    vec![
+        ("even", even),
+        ("tiny", tiny),
+        ("huge", huge),
+        ("points", points),
+        ("far from the origin", far),
+        ("flat", flat),
+        ("small in large", stadium),
+        ("touching", grid),
+        ("nested", nested),
+        ("shrinking", shrinking),
+        ("coincident", same),
+        ("some empty", with_empty),
+        ("one", vec![around(DVec3::Y, DVec3::ONE)]),
+        ("none", Vec::new()),
+        ("nothing but empty", vec![Aabb::EMPTY; 9]),
+    ]
+}
+
+/// Lines through boxes, along their faces, through their corners; from near and far.
+fn aimed(boxes: &[Aabb], whole: &Aabb, r: &mut Random) -> Ray {
+    let size = whole.half_size().max_element().max(1e-170);
+    let target = match boxes.get(r.below(boxes.len().max(1))) {
+        Some(b) if !b.is_empty() => match r.below(3) {
+            0 => b.corners()[r.below(8)],
+            1 => b.center(),
+            _ => b.min + b.size() * r.unit(),
+        },
+        _ => r.point(size),
+    };
+    let axis = DVec3::AXES[r.below(3)] * [1.0, -1.0][r.below(2)];
+    let direction = match r.below(4) {
+        0 => axis,
+        1 => axis + DVec3::AXES[r.below(3)],
+        _ => r.point(1.0),
+    };
+    let direction = if direction == DVec3::ZERO {
+        axis
+    } else {
+        direction
+    };
+    let back = [0.0, 1.0, 3.0, 1e4][r.below(4)] * size;
+    Ray::new(
+        target - direction * back,
+        direction * [1.0, size, 1e-3][r.below(3)],
+    )
+}
+
+fn tree(boxes: &[Aabb]) -> WideTree {
+    WideTree::build(boxes, &WideTreeConfig::default()).unwrap()
+}
+
+/// Where the line enters the box, as `f64` has it.
+fn entry(b: &Aabb, ray: &Ray, span: &Interval) -> Option<f64> {
+    let met = b.clip(ray).intersection(span);
+    (!b.is_empty() && !met.is_empty()).then_some(met.start)
+}
+
+fn span(r: &mut Random, ray: &Ray, whole: &Aabb) -> Interval {
+    let reach = whole.clip(ray);
+    match r.below(3) {
+        0 => Interval::ALL,
+        1 => Interval::new(0.0, f64::INFINITY),
+        _ if reach.is_empty() => Interval::new(-1.0, 1.0),
+        _ => {
+            let mid = reach.start + (reach.end - reach.start) * r.unit();
+            Interval::new(mid, mid + (reach.end - reach.start) * r.unit())
+        }
+    }
+}
+
+#[test]
+fn every_item_stands_in_one_leaf_and_the_depth_is_bounded() {
+    for (name, boxes) in zoo() {
+        for leaf_size in [1, 4, 8] {
+            let config = WideTreeConfig {
+                leaf_size,
+                ..WideTreeConfig::default()
+            };
+            let tree = WideTree::build(&boxes, &config).unwrap();
+            let mut items = tree.items.clone();
+            items.sort_unstable();
+            let wanted: Vec<u32> = (0..boxes.len() as u32)
+                .filter(|&i| !boxes[i as usize].is_empty())
+                .collect();
+            assert_eq!(items, wanted, "{name}");
+            assert!(tree.stats.depth <= MAX_DEPTH, "{name}");
+            let mut seen = vec![0; tree.items.len()];
+            for node in &tree.nodes {
+                for lane in 0..8 {
+                    let used = node.boxes.planes[0][lane] < f32::INFINITY;
+                    let Some(places) = link::items(node.links[lane]).filter(|_| used) else {
+                        continue;
+                    };
+                    assert!(places.len() <= leaf_size as usize);
+                    for place in places {
+                        seen[place] += 1;
+                        let inner = tree.frame.outward(&boxes[tree.items[place] as usize]);
+                        for axis in 0..3 {
+                            assert!(node.boxes.planes[axis][lane] <= inner.min[axis]);
+                            assert!(node.boxes.planes[axis + 3][lane] >= inner.max[axis]);
+                        }
+                    }
+                }
+            }
+            assert!(seen.iter().all(|&count| count == 1), "{name}");
+        }
+    }
+}
+
+#[test]
+fn no_box_on_the_line_is_left_out_and_few_others_are_shown() {
+    let (mut met, mut shown) = (0, 0);
+    for (seed, (name, boxes)) in zoo().into_iter().enumerate() {
+        let tree = tree(&boxes);
+        let mut r = Random(100 + seed as u64, 0);
+        for _ in 0..400 {
+            let ray = aimed(&boxes, tree.bounds(), &mut r);
+            let span = span(&mut r, &ray, tree.bounds());
+            let mut cost = WalkCost::default();
+            let mut visits = vec![0; boxes.len()];
+            tree.all(&ray, span, &mut cost, |item| visits[item as usize] += 1);
+            assert_eq!(cost.items, visits.iter().sum::<u64>());
+            for (b, &visits) in boxes.iter().zip(&visits) {
+                let hit = entry(b, &ray, &span).is_some();
+                assert!(
+                    visits == 1 || (visits == 0 && !hit),
+                    "{name}: {ray:?} {span:?} {b:?}"
+                );
+                met += u64::from(hit);
+                shown += visits;
+            }
+        }
+    }
+    assert!(met > 100_000 && shown < 4 * met, "{met} {shown}");
+}
+
+#[test]
+fn the_first_box_is_the_one_that_trying_all_of_them_finds() {
+    let mut found = 0;
+    for (seed, (name, boxes)) in zoo().into_iter().enumerate() {
+        let vector = tree(&boxes);
+        let scalar = vector.clone().with_lanes(Lanes::Scalar);
+        let mut r = Random(200 + seed as u64, 0);
+        for _ in 0..1500 {
+            let ray = aimed(&boxes, vector.bounds(), &mut r);
+            let span = span(&mut r, &ray, vector.bounds());
+            // Ties go to the lowest item.
+            let better = |best: &mut Option<(f64, u32)>, item: u32| {
+                if let Some(t) = entry(&boxes[item as usize], &ray, &span)
+                    && best.is_none_or(|b| (t, item) < b)
+                {
+                    *best = Some((t, item));
+                }
+            };
+            let mut wanted = None;
+            for item in 0..boxes.len() as u32 {
+                better(&mut wanted, item);
+            }
+            let walk = |tree: &WideTree| {
+                let (mut best, mut order) = (None, Vec::new());
+                let mut cost = WalkCost::default();
+                tree.closest(&ray, span, &mut cost, |item, end| {
+                    order.push(item);
+                    better(&mut best, item);
+                    best.map_or(end, |(t, _)| t)
+                });
+                (best, order, cost)
+            };
+            let (best, order, cost) = walk(&vector);
+            assert_eq!(best, wanted, "{name}: {ray:?} {span:?}");
+            assert_eq!((best, order, cost), walk(&scalar), "{name}: {ray:?}");
+            let mut cost = WalkCost::default();
+            let any = vector.any(&ray, span, &mut cost, |item| {
+                entry(&boxes[item as usize], &ray, &span).is_some()
+            });
+            assert_eq!(any, wanted.is_some(), "{name}");
+            found += u32::from(any);
+        }
+    }
+    assert!(found > 8_000, "{found}");
+}
+
+#[test]
+fn the_same_bytes_for_any_number_of_threads() {
+    let mut r = Random(3, 0);
+    let mut boxes: Vec<_> = (0..40_000)
+        .map(|i| {
+            // Many centres coincide, so that ties and refinements matter.
+            let center = (r.point(4.0) * [1.0, 2.0, 1e-7][i % 3]).round() * 0.5;
+            around(center, r.point(0.1))
+        })
+        .collect();
+    boxes.extend((0..9_000).map(|_| around(r.point(1e-9), r.point(1e-12))));
+    let build = |threads: usize| {
+        let pool = rayon::ThreadPoolBuilder::new()
+            .num_threads(threads)
+            .build()
+            .unwrap();
+        pool.install(|| tree(&boxes))
+    };
+    let one = build(1);
+    for threads in [2, 4] {
+        let other = build(threads);
+        assert!(one.bytes() == other.bytes());
+        assert_eq!(one.stats, other.stats);
+    }
+}
+
+#[test]
+fn a_cluster_far_smaller_than_a_cell_is_still_divided() {
+    let mut r = Random(4, 0);
+    let mut boxes = vec![around(DVec3::splat(1e9), DVec3::ONE)];
+    boxes.extend((0..5000).map(|_| around(r.point(1e-3), DVec3::splat(1e-6))));
+    let tree = tree(&boxes);
+    let mut cost = WalkCost::default();
+    // In f32 all of it is one point, but order and depth must not degenerate.
+    tree.all(
+        &Ray::new(-DVec3::X, DVec3::X),
+        Interval::ALL,
+        &mut cost,
+        |_| (),
+    );
+    assert!(
+        tree.stats.depth < 12 && tree.stats.nodes < 2500,
+        "{:?}",
+        tree.stats
+    );
+}
+
+#[test]
+fn broken_rays_and_empty_spans_meet_nothing() {
+    let boxes = [around(DVec3::ZERO, DVec3::ONE)];
+    let tree = tree(&boxes);
+    let mut cost = WalkCost::default();
+    let bad = [DVec3::ZERO, DVec3::NAN, DVec3::INFINITY];
+    for direction in bad {
+        let ray = Ray::new(DVec3::ZERO, direction);
+        assert!(!tree.any(&ray, Interval::ALL, &mut cost, |_| true));
+    }
+    let ray = Ray::new(DVec3::ZERO, DVec3::X);
+    for span in [
+        Interval::EMPTY,
+        Interval::new(f64::NAN, 1.0),
+        Interval::new(2.0, 3.0),
+    ] {
+        assert!(!tree.any(&ray, span, &mut cost, |_| true), "{span:?}");
+    }
+    // Lengths of directions and places of origins that overflow when squared.
+    for scale in [1e-320, 1e-200, 1.0, 1e200, 1e308] {
+        let ray = Ray::new(DVec3::ZERO, DVec3::X * scale);
+        assert!(tree.any(&ray, Interval::ALL, &mut cost, |_| true));
+        let ray = Ray::new(DVec3::X * -scale, DVec3::X);
+        assert!(tree.any(&ray, Interval::ALL, &mut cost, |_| true));
+    }
+}
+
+#[test]
+fn what_cannot_be_built_is_said() {
+    let half = Aabb::new(DVec3::ZERO, DVec3::INFINITY);
+    let boxes = [around(DVec3::ZERO, DVec3::ONE), half];
+    let config = WideTreeConfig::default();
+    assert_eq!(
+        WideTree::build(&boxes, &config).unwrap_err(),
+        WideTreeError::Unbounded(1)
+    );
+    let config = WideTreeConfig {
+        memory_limit: 1000,
+        ..config
+    };
+    let error = WideTree::build(&[boxes[0]; 100], &config).unwrap_err();
+    assert!(matches!(
+        error,
+        WideTreeError::Memory { items: 100, limit: 1000, needed } if needed > 1000
+    ));
+    for (name, boxes) in zoo() {
+        let stats = tree(&boxes).stats;
+        for leaf_size in [1, 4] {
+            assert!(
+                stats.bytes <= WideTree::memory_bound(boxes.len(), leaf_size),
+                "{name}"
+            );
+        }
+    }
+}
