@@ -110,23 +110,47 @@ impl Silhouette {
 fn explore() {
     for folder in ["openscad/examples", "openscad/dump"] {
         let Some(folder) = corpus(folder) else { return };
-        let mut paths: Vec<PathBuf> = std::fs::read_dir(folder).unwrap().map(|e| e.unwrap().path()).collect();
+        let mut paths: Vec<PathBuf> = std::fs::read_dir(folder)
+            .unwrap()
+            .map(|e| e.unwrap().path())
+            .collect();
         paths.sort();
         for path in paths {
             let name = path.file_name().unwrap().to_string_lossy().into_owned();
-            if !name.ends_with(".csg") || name.ends_with(".master.csg") { continue; }
-            let picture = path.with_file_name(format!("{}.render.png", name.split('.').next().unwrap()));
-            let picture = if picture.is_file() { picture } else { path.with_file_name(format!("{}.preview.png", name.split('.').next().unwrap())) };
-            if !picture.is_file() { continue; }
-            let Some(scene) = scene(&path) else { println!("{name}: unsupported"); continue };
-            if scene.objects().is_empty() { println!("{name}: empty"); continue }
+            if !name.ends_with(".csg") || name.ends_with(".master.csg") {
+                continue;
+            }
+            let picture =
+                path.with_file_name(format!("{}.render.png", name.split('.').next().unwrap()));
+            let picture = if picture.is_file() {
+                picture
+            } else {
+                path.with_file_name(format!("{}.preview.png", name.split('.').next().unwrap()))
+            };
+            if !picture.is_file() {
+                continue;
+            }
+            let Some(scene) = scene(&path) else {
+                println!("{name}: unsupported");
+                continue;
+            };
+            if scene.objects().is_empty() {
+                println!("{name}: empty");
+                continue;
+            }
             let t = std::time::Instant::now();
             let world = world(scene);
             let prep = t.elapsed();
             let expected = Silhouette::of_picture(&picture);
             let ours = Silhouette::of_world(&world, world.bounds(), expected.size);
             let (d, far) = ours.differences(&expected);
-            println!("{name}: area {} of {}, differ {d}, far {far} {:?} {prep:?} {:?}", ours.area(), expected.area(), world.bounds(), t.elapsed());
+            println!(
+                "{name}: area {} of {}, differ {d}, far {far} {:?} {prep:?} {:?}",
+                ours.area(),
+                expected.area(),
+                world.bounds(),
+                t.elapsed()
+            );
         }
     }
 }

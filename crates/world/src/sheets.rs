@@ -4,8 +4,10 @@ use std::sync::Arc;
 
 use octray_geometry::mesh::{Placement, TrianglePoint, TriangleRay};
 use octray_geometry::{FaceId, MaterialId, Sheet, TriangleMesh};
-use octray_math::DVec3;
+use octray_math::{Aabb, DVec3, Interval};
 use octray_scene::{ObjectId, Scene, Shape};
+use octray_tree::{WalkCost, WideTree, WideTreeConfig, WideTreeError, WideTreeStats};
+use rayon::prelude::*;
 
 use crate::Counters;
 use crate::line::Line;
@@ -25,6 +27,8 @@ pub(crate) struct Sheets {
     parts: Vec<Part>,
     positions: Vec<DVec3>,
     triangles: Vec<[u32; 3]>,
+    /// `None` for brute force.
+    tree: Option<WideTree>,
     first_face: u32,
 }
 
@@ -37,12 +41,21 @@ pub(crate) struct SheetHit {
 }
 
 impl Sheets {
-    /// The mesh sheets of the scene; their triangles' faces are numbered from `first_face`.
-    pub(crate) fn prepare(scene: &Scene, first_face: u32) -> Self {
+    /// The mesh sheets of the scene; their triangles' faces are numbered from `first_face`. With
+    /// `config` in an octree, else for brute force.
+    ///
+    /// # Errors
+    /// The tree would not fit the memory limit.
+    pub(crate) fn prepare(
+        scene: &Scene,
+        first_face: u32,
+        config: Option<&WideTreeConfig>,
+    ) -> Result<Self, WideTreeError> {
         let mut sheets = Self {
             parts: Vec::new(),
             positions: Vec::new(),
             triangles: Vec::new(),
+            tree: None,
             first_face,
         };
         for (index, object) in scene.objects().iter().enumerate() {
@@ -55,7 +68,15 @@ impl Sheets {
                 sheets.add(ObjectId(index as u32), mesh, placement);
             }
         }
-        sheets
+        if let Some(config) = config {
+            let box_of = |t: u32| Aabb::from_points(sheets.corners(t));
+            let bounds: Vec<Aabb> = (0..sheets.triangles.len() as u32)
+                .into_par_iter()
+                .map(box_of)
+                .collect();
+            sheets.tree = Some(WideTree::build(&bounds, config)?);
+        }
+        Ok(sheets)
     }
 
     fn add(&mut self, object: ObjectId, mesh: &Arc<TriangleMesh>, placement: Placement) {
@@ -75,6 +96,17 @@ impl Sheets {
 
     pub(crate) fn triangle_count(&self) -> usize {
         self.triangles.len()
+    }
+
+    pub(crate) fn tree_stats(&self) -> Option<&WideTreeStats> {
+        self.tree.as_ref().map(WideTree::stats)
+    }
+
+    /// The bytes of the tree, for hashing.
+    pub(crate) fn bytes(&self) -> impl Iterator<Item = u8> + '_ {
+        self.tree
+            .iter()
+            .flat_map(|tree| tree.bytes().into_iter().flatten().copied())
     }
 
     fn corners(&self, triangle: u32) -> [DVec3; 3] {
@@ -115,7 +147,8 @@ impl Sheets {
         }
         let ray = TriangleRay::new(&line.ray);
         let departed = self.triangle(line.departure.face);
-        let mut limit = limit.min(line.end);
+        let limit_before = limit.min(line.end);
+        let mut limit = limit_before;
         let mut tests = 0;
         let mut test = |triangle: u32| {
             tests += 1;
@@ -135,8 +168,20 @@ impl Sheets {
             }
             limit
         };
-        for triangle in 0..self.triangles.len() as u32 {
-            test(triangle);
+        match &self.tree {
+            Some(tree) => {
+                let mut cost = WalkCost::default();
+                let span = Interval::new(line.origin, limit_before);
+                tree.closest(&line.ray, span, &mut cost, |triangle, end| {
+                    test(triangle).min(end)
+                });
+                counters.nodes += cost.nodes;
+            }
+            None => {
+                for triangle in 0..self.triangles.len() as u32 {
+                    test(triangle);
+                }
+            }
         }
         counters.triangle_tests += tests;
     }

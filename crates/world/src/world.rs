@@ -6,7 +6,7 @@ use octray_geometry::FaceId;
 use octray_geometry::mesh::MeshError;
 use octray_math::{Aabb, DVec3};
 use octray_scene::{Scene, Shape};
-use octray_tree::{CellTreeStats, Criteria};
+use octray_tree::{CellTreeStats, Criteria, WideTreeConfig, WideTreeError, WideTreeStats};
 use thiserror::Error;
 
 use crate::line::Line;
@@ -44,6 +44,9 @@ pub enum WorldError {
         /// What is wrong with the mesh.
         error: MeshError,
     },
+    /// The octree over the triangles does not fit.
+    #[error("octree over the triangles: {0}")]
+    Triangles(#[from] WideTreeError),
     /// Faces and triangles together outnumber their ids.
     #[error("the scene has more than 2^30 faces and triangles")]
     TooManyFaces,
@@ -77,6 +80,8 @@ pub struct WorldStats {
     pub triangles: usize,
     /// The octree over the solids.
     pub cells: Option<CellTreeStats>,
+    /// The octree over the triangles.
+    pub wide: Option<WideTreeStats>,
 }
 
 /// Working memory is handed from query to query instead of being made anew.
@@ -106,7 +111,11 @@ impl World {
         }
         let solids = Solids::prepare(&scene, accelerate.then_some(&config.criteria))
             .map_err(|(object, error)| WorldError::Mesh { object, error })?;
-        let sheets = Sheets::prepare(&scene, solids.face_count());
+        let wide = WideTreeConfig {
+            memory_limit: config.criteria.memory_limit,
+            ..WideTreeConfig::default()
+        };
+        let sheets = Sheets::prepare(&scene, solids.face_count(), accelerate.then_some(&wide))?;
         let bounds = scene.bounds();
         let center = if bounds.is_empty() {
             DVec3::ZERO
@@ -157,12 +166,16 @@ impl World {
             faces: self.solids.face_count() as usize + self.sheets.triangle_count(),
             triangles: self.sheets.triangle_count(),
             cells: self.solids.tree_stats().cloned(),
+            wide: self.sheets.tree_stats().copied(),
         }
     }
 
-    /// The built structures as words: equal for equal scenes, whatever built them.
-    pub fn words(&self) -> impl Iterator<Item = u32> + '_ {
-        self.solids.words()
+    /// The built structures as bytes: equal for equal scenes, whatever built them.
+    pub fn bytes(&self) -> impl Iterator<Item = u8> + '_ {
+        self.solids
+            .words()
+            .flat_map(u32::to_le_bytes)
+            .chain(self.sheets.bytes())
     }
 
     /// The nearest surface on each ray; `hits` is cleared and gets one hit per query.

@@ -133,6 +133,19 @@ fn odd_rays_meet_nothing_and_long_or_short_directions_do_not_matter() {
     }
 }
 
+#[test]
+fn a_lone_surface_is_not_followed_into_the_smallest_cells() {
+    for solid in [
+        Solid::torus(3.0, 1.0),
+        Solid::sphere(1.0),
+        Solid::cone(1.0, 0.0, 0.0, 2.0),
+    ] {
+        let world = world([solid.expect("valid")], Accel::Auto, Criteria::default());
+        let cells = world.stats().cells.expect("an octree");
+        assert!(cells.occupied < 2000, "{cells:?}");
+    }
+}
+
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(150))]
 
@@ -223,7 +236,7 @@ proptest! {
         let with = |threads| {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("pool");
             let world = pool.install(|| world(solids.clone(), Accel::Auto, deep()));
-            world.words().collect::<Vec<u32>>()
+            world.bytes().collect::<Vec<u8>>()
         };
         prop_assert_eq!(with(1), with(4));
     }

@@ -27,8 +27,9 @@ pub trait Subdivide: Sync {
 ///
 /// A cell is divided when the expected cost of a ray that meets it falls: a ray that meets a cube
 /// meets each of its octants with probability 1/4 (the ratio of surface areas, MacDonald & Booth
-/// 1990). A costly cell may be divided a few times without gain, because many faces through one
-/// octant need more than one division to come apart.
+/// 1990). A cell of many parts may be divided a few times without gain, because many faces through
+/// one octant need more than one division to come apart. (One part alone never comes apart, and
+/// following it without gain would fill its whole surface with the smallest cells.)
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Criteria {
     /// No cell lies deeper; at most 21.
@@ -50,9 +51,9 @@ impl Default for Criteria {
     }
 }
 
-/// How often in a row a cell may be divided without gain, and how costly it must be.
+/// How often in a row a cell may be divided without gain, and how many parts it must have.
 const FUTILE_LIMIT: u8 = 3;
-const FUTILE_COST: f64 = 12.0;
+const FUTILE_PARTS: u32 = 8;
 /// Passing an empty cell costs this share of entering an occupied one.
 const EMPTY_SHARE: f64 = 0.2;
 
@@ -162,7 +163,7 @@ fn divide<S: Subdivide>(
     subdivide: &S,
     criteria: &Criteria,
 ) -> Option<Vec<Frontier<S::Content>>> {
-    let Cell::Occupied { cost } = subdivide.describe(&cell.content) else {
+    let Cell::Occupied { cost, parts } = subdivide.describe(&cell.content) else {
         return None;
     };
     let margin = root.size().x * CellTree::CONTENT_MARGIN;
@@ -174,7 +175,7 @@ fn divide<S: Subdivide>(
         expected += 0.25
             * match subdivide.describe(&content) {
                 Cell::Empty(_) => EMPTY_SHARE * criteria.visit_cost,
-                Cell::Occupied { cost } => criteria.visit_cost + cost,
+                Cell::Occupied { cost, .. } => criteria.visit_cost + cost,
             };
         children.push(Frontier {
             key,
@@ -185,7 +186,7 @@ fn divide<S: Subdivide>(
     if expected < criteria.visit_cost + cost {
         return Some(children);
     }
-    if cost > FUTILE_COST && cell.futile < FUTILE_LIMIT {
+    if parts > FUTILE_PARTS && cell.futile < FUTILE_LIMIT {
         for child in &mut children {
             child.futile = cell.futile + 1;
         }

@@ -22,6 +22,8 @@ pub enum Cell {
     Occupied {
         /// In units of one plane intersected with a line.
         cost: f64,
+        /// How many things there are that might come apart in smaller cells.
+        parts: u32,
     },
 }
 

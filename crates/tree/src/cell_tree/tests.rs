@@ -17,7 +17,10 @@ impl Subdivide for Boxes {
     fn describe(&self, content: &Vec<u32>) -> Cell {
         match content.len() {
             0 => Cell::Empty(0),
-            n => Cell::Occupied { cost: n as f64 },
+            n => Cell::Occupied {
+                cost: n as f64,
+                parts: n as u32,
+            },
         }
     }
 

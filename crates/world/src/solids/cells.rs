@@ -115,7 +115,8 @@ impl Cells<'_> {
         &self.meshes[surface as usize - self.surfaces.len()].solid
     }
 
-    /// The work of crossing a surface, in planes.
+    /// The work of a surface in a cell, in planes. A line crosses each surface once, however many
+    /// cells ask, so the costly ones count less than a single crossing costs.
     fn cost(&self, surface: u32) -> f64 {
         match self.surfaces.get(surface as usize) {
             Some(Surface::Plane { .. }) => 1.0,
@@ -127,8 +128,8 @@ impl Cells<'_> {
                 kind: Quadric::Cone,
                 ..
             }) => 3.0,
-            Some(Surface::Torus { .. }) => 15.0,
-            None => 40.0,
+            Some(Surface::Torus { .. }) => 5.0,
+            None => 8.0,
         }
     }
 }
@@ -174,6 +175,7 @@ impl Subdivide for Cells<'_> {
         }
         Cell::Occupied {
             cost: content.surfaces.iter().map(|&s| self.cost(s)).sum(),
+            parts: content.surfaces.len() as u32,
         }
     }
 
