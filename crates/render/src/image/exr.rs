@@ -1,6 +1,6 @@
 use std::io::Cursor;
 
-use exr::prelude::{Image as ExrImage, SpecificChannels, WritableImage};
+use exr::prelude::{Encoding, Image as ExrImage, LayerAttributes, SpecificChannels, WritableImage};
 
 use super::{Image, ImageError};
 
@@ -19,7 +19,15 @@ pub fn encode_exr(image: &Image) -> Result<Vec<u8>, ImageError> {
         (r, g, b)
     });
     let mut bytes = Vec::new();
-    ExrImage::from_channels((width, image.height() as usize), channels)
+    let size = (width, image.height() as usize);
+    // Lines from the top and ZIP: what every program reads.
+    let layer = exr::prelude::Layer::new(
+        size,
+        LayerAttributes::default(),
+        Encoding::SMALL_LOSSLESS,
+        channels,
+    );
+    ExrImage::from_layer(layer)
         .write()
         // Compressing in order keeps the file's bytes independent of the threads.
         .non_parallel()
