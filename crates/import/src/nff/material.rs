@@ -2,10 +2,14 @@
 //!
 //! The format gives numbers, not formulas. These are the formulas that the databases' own
 //! generators use when they write the same scenes for POV-Ray 3 (`*.pov` of the SPD package):
-//! `Kd` is the diffuse term; `Ks` is both the mirror's share and the highlight's amount, `Shine`
-//! Phong's exponent; `T` is the share of light that passes, tinted by the colour; lights without
-//! a colour have the strength `1 / sqrt(number of lights)`. Colours are display values: nothing is
-//! gamma corrected.
+//! `Kd` is the diffuse term, `Ks` the mirror's share, `Shine` Phong's exponent; `T` is the share
+//! of light that passes, tinted by the colour; lights without a colour have the strength
+//! `1 / sqrt(number of lights)`. Colours are display values: nothing is gamma corrected.
+//!
+//! Two numbers that the generators know are lost in NFF. The highlight's amount is Ks = 0.5 for
+//! balls, Kd = 0.3 (Ks = 0.6) for gears, Ks for teapot; the lesser of the two is taken (rings have 0.3
+//! instead of 0.2, mount 0.4 instead of 0.1, which shows little). Ambient light is given
+//! to matte surfaces only: what Kd leaves of 1.
 
 use octray_math::DVec3;
 use octray_scene::{Color, Finish, Interior, Material, Pigment, Reflection};
@@ -38,8 +42,6 @@ impl Fill {
     #[must_use]
     pub fn material(&self, name: &str) -> Material {
         let matte = self.ks == 0.0 && self.t == 0.0;
-        // NFF has no ambient term. The generators give one to matte surfaces only: what `Kd`
-        // leaves of 1.
         let ambient = if matte { (1.0 - self.kd).max(0.0) } else { 0.0 };
         Material {
             name: name.to_owned(),
@@ -51,7 +53,7 @@ impl Fill {
             finish: Finish {
                 ambient: DVec3::splat(ambient),
                 diffuse: self.kd,
-                phong: self.ks,
+                phong: self.ks.min(self.kd),
                 phong_size: self.shine,
                 reflection: Reflection::constant(DVec3::splat(self.ks)),
                 ..Finish::default()
