@@ -21,6 +21,8 @@ pub(super) struct CameraState {
     angle: Option<f64>,
     /// `right` or `up` was made from the size of the picture.
     from_image_size: bool,
+    /// A kind that is not supported; its angle may be wider than a perspective can show.
+    substitute: bool,
     world_from_camera: DAffine3,
 }
 
@@ -36,6 +38,7 @@ impl Default for CameraState {
             look_at: None,
             angle: None,
             from_image_size: false,
+            substitute: false,
             world_from_camera: DAffine3::IDENTITY,
         }
     }
@@ -89,8 +92,10 @@ impl Reader<'_> {
             | "mesh_camera" => {
                 let message = format!("the camera `{word}` is not supported: a perspective one is taken");
                 self.warn(token.span, message);
+                made.substitute = true;
             }
             "cylinder" => {
+                made.substitute = true;
                 self.float()?;
                 self.warn(token.span, "the cylindrical camera is not supported: a perspective one is taken");
             }
@@ -151,6 +156,7 @@ impl CameraState {
             direction = view * direction.length();
         }
         if let Some(angle) = self.angle {
+            let angle = if self.substitute { angle.min(120.0) } else { angle };
             if !(angle > 0.0 && angle < 180.0) {
                 return Err("the camera's angle must lie between 0 and 180 degrees");
             }

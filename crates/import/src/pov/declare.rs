@@ -91,7 +91,7 @@ impl Reader<'_> {
             return self.fail(token.span, format!("expected a name, found {found}"));
         };
         let Some(mut value) = self.scopes.get(&name).cloned() else {
-            if self.partial_includes && !super::KEYWORDS.contains(&&*name) {
+            if self.partial_includes && !super::is_reserved(&name) {
                 return self.unknown(&name, token.span);
             }
             return self.undeclared(&name, token.span);
@@ -213,7 +213,7 @@ impl Reader<'_> {
 
     fn named_rvalue(&mut self, word: &str) -> Parsed<Value> {
         match self.scopes.get(word) {
-            None if self.partial_includes && !super::KEYWORDS.contains(&word) => self.reference(),
+            None if self.partial_includes && !super::is_reserved(word) => self.reference(),
             None | Some(Value::Terms(_) | Value::Function(_)) => {
                 Ok(Value::Terms(self.expression()?))
             }

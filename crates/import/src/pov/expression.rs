@@ -322,6 +322,21 @@ impl Reader<'_> {
     }
 }
 
+/// Whether an expression may begin with this word though nobody has declared it.
+pub(super) fn is_built_in(word: &str) -> bool {
+    is_constant(word) || is_color_word(word) || super::functions::is_function(word)
+}
+
+fn is_constant(word: &str) -> bool {
+    CONSTANTS.contains(&word)
+}
+
+const CONSTANTS: [&str; 25] = [
+    "x", "y", "z", "u", "v", "t", "pi", "tau", "yes", "on", "true", "no", "off", "false", "clock",
+    "clock_on", "clock_delta", "initial_frame", "final_frame", "frame_number", "initial_clock",
+    "final_clock", "version", "image_width", "image_height",
+];
+
 /// Words that begin a colour.
 pub(super) fn is_color_word(word: &str) -> bool {
     matches!(

@@ -7,6 +7,9 @@ use super::reader::{Parsed, Reader};
 use super::standard::{self, Standard};
 use crate::Span;
 
+/// The folder that our own texts of standard includes seem to be in.
+const STANDARD: &str = "<standard>";
+
 impl Reader<'_> {
     pub(super) fn include(&mut self, span: Span) -> Parsed<()> {
         let name = self.text()?;
@@ -45,10 +48,10 @@ impl Reader<'_> {
     }
 
     fn standard(&mut self, name: &str, known: &Standard, span: Span) -> Parsed<()> {
-        if !known.complete && !self.partial_includes {
-            self.partial_includes = true;
-        }
-        if !known.complete {
+        self.partial_includes |= !known.complete;
+        // What a standard include includes in turn was not the user's doing.
+        let nested = self.diagnostics.path(span.source).starts_with(STANDARD);
+        if !known.complete && !nested {
             let message = if known.text.is_empty() {
                 format!("octray has no definitions for the standard include `{name}`: what uses them is left out")
             } else {
@@ -65,7 +68,7 @@ impl Reader<'_> {
         if known.text.is_empty() {
             return Ok(());
         }
-        let path = Path::new("<standard>").join(name);
+        let path = Path::new(STANDARD).join(name);
         self.open_source(&path, known.text.as_bytes().to_vec())
     }
 

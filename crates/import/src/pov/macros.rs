@@ -127,7 +127,7 @@ impl Reader<'_> {
                 .and_then(|frame| frame.tokens.get(frame.at))
                 .is_some_and(|next| next.is(",") || next.is(")"));
             let value = self.scopes.get(word).cloned();
-            if alone && (value.is_some() || !super::KEYWORDS.contains(&&**word)) {
+            if alone && (value.is_some() || !super::is_reserved(word)) {
                 if value.is_none() && self.partial_includes {
                     return Ok((Some(self.rvalue()?), None));
                 }

@@ -146,6 +146,14 @@ const STATEMENTS: [&str; 27] = [
     "height_field",
 ];
 
+/// Whether this word is the language's own.
+fn is_reserved(word: &str) -> bool {
+    KEYWORDS.contains(&word)
+        || expression::is_built_in(word)
+        || functions::is_text_function(word)
+        || object::OBJECTS.contains(&word)
+}
+
 /// Words of the language that are not the user's to declare, for suggestions.
 const KEYWORDS: [&str; 122] = [
     "aa_level", "adaptive", "ambient", "angle", "area_light", "array", "assumed_gamma",

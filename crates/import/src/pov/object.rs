@@ -168,7 +168,7 @@ impl Reader<'_> {
     /// What distinguishes the object, up to its modifiers.
     fn head(&mut self, word: &str, span: Span) -> Parsed<Option<ObjectDef>> {
         match word {
-            "object" => self.object_head(),
+            "object" => Ok(self.object_head()?.map(|object| ObjectDef { span, ..object })),
             "light_source" => self.light_head(),
             _ => {
                 let token = self.peek();

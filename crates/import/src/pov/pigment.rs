@@ -123,7 +123,7 @@ impl Reader<'_> {
         match self.scopes.get(word) {
             Some(Value::Pigment(_) | Value::Unknown | Value::Ignored(_)) => {}
             Some(Value::ColorMap(_)) => return self.unexpected("a pigment"),
-            None if self.partial_includes && !super::KEYWORDS.contains(&word) => {}
+            None if self.partial_includes && !super::is_reserved(word) => {}
             _ => {
                 state.base = Some(Pigment::Uniform(self.color()?));
                 return Ok(());

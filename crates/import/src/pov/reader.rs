@@ -158,10 +158,6 @@ impl<'a> Reader<'a> {
         result
     }
 
-    pub(super) const fn is_halted(&self) -> bool {
-        self.halted
-    }
-
     /// Books memory that what is read will take.
     pub(super) fn book(&mut self, bytes: u64) -> Parsed<()> {
         self.bytes = self.bytes.saturating_add(bytes);
@@ -345,10 +341,6 @@ impl<'a> Reader<'a> {
         if let Some(frame) = self.frames.last_mut() {
             frame.at = at;
         }
-    }
-
-    pub(super) const fn has_look_ahead(&self) -> bool {
-        self.ahead.is_some()
     }
 
     /// Exchanges the look-ahead: function bodies are read from a place of their own.

@@ -93,7 +93,7 @@ impl Reader<'_> {
                     return self.skip_block();
                 }
                 let known = self.scopes.get(&word).is_some();
-                if !known && super::KEYWORDS.contains(&&*word) {
+                if !known && super::is_reserved(&word) {
                     self.next();
                     return self.fail(token.span, format!("`{word}` begins no statement"));
                 }
