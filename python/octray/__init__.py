@@ -8,12 +8,22 @@ in linear light, or text such as ``"#b8c4d0"`` in sRGB.
 >>> scene = octray.Scene(units="mm")
 >>> scene.add(body, name="bracket", material="#b8c4d0")
 0
+>>> octray.render(scene, size=(64, 48))
+<octray.Image 64x48>
+>>> scene.cast_rays([0, 0, 100, 0, 0, -1]).hit.item()
+False
 """
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
 
 from octray._core import (
     Camera,
     Diagnostic,
     DirectionalLight,
+    Hits,
+    Image,
     Light,
     Material,
     PointLight,
@@ -37,10 +47,17 @@ from octray._core import (
     union,
 )
 
+if TYPE_CHECKING:
+    from typing_extensions import Unpack
+
+    from octray._core import RenderOptions
+
 __all__ = [
     "Camera",
     "Diagnostic",
     "DirectionalLight",
+    "Hits",
+    "Image",
     "Light",
     "Material",
     "PointLight",
@@ -59,7 +76,13 @@ __all__ = [
     "load",
     "mesh_solid",
     "polyhedron",
+    "render",
     "sphere",
     "torus",
     "union",
 ]
+
+
+def render(scene: Scene, **options: Unpack[RenderOptions]) -> Image:
+    """Render a picture of the scene: the same as ``scene.render``."""
+    return scene.render(**options)

@@ -152,6 +152,14 @@ fn camera<'py>(py: Python<'py>, camera: &Camera) -> PyResult<Bound<'py, PyDict>>
     Ok(dict)
 }
 
+/// The colours of a background from below to above.
+pub(crate) fn background(background: &Background) -> Vec<[f64; 3]> {
+    match background {
+        Background::Uniform(rgb) => vec![rgb.to_array()],
+        Background::Gradient { map, .. } => map.iter().map(|s| s.color.rgb.to_array()).collect(),
+    }
+}
+
 /// The whole scene.
 pub(crate) fn scene<'py>(py: Python<'py>, scene: &Scene) -> PyResult<Bound<'py, PyDict>> {
     let objects = PyList::empty(py);
@@ -177,11 +185,7 @@ pub(crate) fn scene<'py>(py: Python<'py>, scene: &Scene) -> PyResult<Bound<'py, 
     dict.set_item("lights", lights)?;
     let seen = scene.camera().map(|c| camera(py, c)).transpose()?;
     dict.set_item("camera", seen)?;
-    let background = match scene.background() {
-        Background::Uniform(rgb) => vec![rgb.to_array()],
-        Background::Gradient { map, .. } => map.iter().map(|s| s.color.rgb.to_array()).collect(),
-    };
-    dict.set_item("background", background)?;
+    dict.set_item("background", background(scene.background()))?;
     dict.set_item("size", settings.size)?;
     dict.set_item("up", settings.up.to_array())?;
     dict.set_item("units", &settings.units)?;

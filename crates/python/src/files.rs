@@ -30,7 +30,11 @@ fn create_beside(target: &Path) -> io::Result<(PathBuf, fs::File)> {
         hidden.push(name);
         hidden.push(format!(".{process}-{attempt}"));
         let temporary = target.with_file_name(hidden);
-        match OpenOptions::new().write(true).create_new(true).open(&temporary) {
+        match OpenOptions::new()
+            .write(true)
+            .create_new(true)
+            .open(&temporary)
+        {
             Ok(file) => return Ok((temporary, file)),
             Err(error) if error.kind() == io::ErrorKind::AlreadyExists => {}
             Err(error) => return Err(error),

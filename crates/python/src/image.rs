@@ -117,7 +117,9 @@ impl Image {
         copy: Option<bool>,
     ) -> PyResult<Bound<'py, PyAny>> {
         if copy == Some(false) {
-            return Err(PyValueError::new_err("a picture is always copied into an array"));
+            return Err(PyValueError::new_err(
+                "a picture is always copied into an array",
+            ));
         }
         let array = self.to_numpy(py)?.into_any();
         match dtype {

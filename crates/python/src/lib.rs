@@ -6,12 +6,21 @@ mod camera;
 mod convert;
 mod describe;
 mod diagnostics;
+mod files;
+mod image;
 mod light;
 mod load;
 mod material;
 mod mesh;
+mod pool;
+mod queries;
+mod render;
+mod report;
 mod scene;
 mod solid;
+mod system;
+mod task;
+mod world;
 
 use pyo3::pymodule;
 
@@ -23,11 +32,17 @@ mod _core {
     #[pymodule_export]
     use super::diagnostics::{Diagnostic, SceneError};
     #[pymodule_export]
+    use super::image::Image;
+    #[pymodule_export]
     use super::light::{DirectionalLight, Light, PointLight, SpotLight};
     #[pymodule_export]
     use super::load::load;
     #[pymodule_export]
     use super::material::Material;
+    #[pymodule_export]
+    use super::queries::Hits;
+    #[pymodule_export]
+    use super::render::check_request;
     #[pymodule_export]
     use super::scene::Scene;
     #[pymodule_export]
@@ -35,6 +50,9 @@ mod _core {
         Solid, cone, cuboid, cylinder, difference, empty, half_space, intersection, mesh_solid,
         polyhedron, sphere, torus, union,
     };
+
+    #[pymodule_export]
+    use super::system::{cpu_features, default_threads};
 
     use pyo3::prelude::*;
 

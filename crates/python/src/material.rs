@@ -24,12 +24,6 @@ fn checked(inner: scene::Material) -> PyResult<Material> {
     }
 }
 
-impl Material {
-    pub(crate) const fn inner(&self) -> &scene::Material {
-        &self.inner
-    }
-}
-
 /// The material of an argument: a `Material`, or a colour for a matte surface.
 pub(crate) fn material(object: &Bound<'_, PyAny>) -> PyResult<scene::Material> {
     if let Ok(material) = object.cast::<Material>() {

@@ -1,26 +1,116 @@
-//! Triangle meshes from arrays and from anything that has them.
+//! Triangle meshes from arrays, from anything that has them, and from files.
 
+use std::path::PathBuf;
 use std::sync::Arc;
 
-use octray::geometry::TriangleMesh;
-use octray::math::DVec3;
-use pyo3::exceptions::PyValueError;
+use octray::geometry::{Primitive, Sheet, Solid, SolidNode, TriangleMesh};
+use octray::math::{DAffine3, DVec3};
+use octray::scene::{MaterialId, Shape as ObjectShape};
+use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
+use pyo3::types::{PyList, PyTuple};
 
 use crate::arrays::{Shape, integer_array, real_array};
 use crate::convert::value_error;
 
+/// What `add_mesh` is given.
+pub(crate) enum Source {
+    Arrays(Arc<TriangleMesh>),
+    File(PathBuf),
+}
+
+impl Source {
+    /// A path, a pair of arrays, or an object with `.vertices` and `.faces`.
+    pub(crate) fn of(object: &Bound<'_, PyAny>) -> PyResult<Self> {
+        if let Ok(path) = object.extract::<PathBuf>() {
+            return Ok(Self::File(path));
+        }
+        let pair = object.is_instance_of::<PyTuple>() || object.is_instance_of::<PyList>();
+        if pair && object.len()? == 2 {
+            let (vertices, faces) = (object.get_item(0)?, object.get_item(1)?);
+            return from_arrays(&vertices, &faces).map(Self::Arrays);
+        }
+        match (object.getattr("vertices"), object.getattr("faces")) {
+            (Ok(vertices), Ok(faces)) => from_arrays(&vertices, &faces).map(Self::Arrays),
+            _ => Err(PyTypeError::new_err(format!(
+                "expected a path, a pair (vertices, faces), or an object that has both, not {}",
+                object.get_type().name()?
+            ))),
+        }
+    }
+}
+
+/// A mesh where it stands in the world.
+pub(crate) struct Placed {
+    pub(crate) mesh: Arc<TriangleMesh>,
+    pub(crate) world_from_mesh: DAffine3,
+    /// Whether it is the boundary of a solid already.
+    pub(crate) solid: bool,
+}
+
+impl Placed {
+    /// The mesh of an object, `None` for objects of another kind.
+    pub(crate) fn of(shape: &ObjectShape) -> Option<Self> {
+        match shape {
+            ObjectShape::Sheet(Sheet::Mesh {
+                mesh,
+                world_from_mesh,
+            }) => Some(Self {
+                mesh: Arc::clone(mesh),
+                world_from_mesh: *world_from_mesh,
+                solid: false,
+            }),
+            ObjectShape::Solid(solid) => match solid.node() {
+                SolidNode::Primitive(Primitive::Mesh(mesh)) => Some(Self {
+                    mesh: Arc::clone(mesh),
+                    world_from_mesh: DAffine3::IDENTITY,
+                    solid: true,
+                }),
+                _ => None,
+            },
+            ObjectShape::Sheet(Sheet::Shell { .. }) => None,
+        }
+    }
+
+    /// The same mesh with every triangle's material replaced by what `id` makes of it.
+    pub(crate) fn with_ids(self, id: impl Fn(MaterialId) -> MaterialId) -> PyResult<Self> {
+        let Some(materials) = self.mesh.materials() else {
+            return Ok(self);
+        };
+        let materials = materials.iter().map(|&m| id(m)).collect();
+        let mesh = TriangleMesh::clone(&self.mesh)
+            .with_materials(materials)
+            .map_err(value_error)?;
+        Ok(Self {
+            mesh: Arc::new(mesh),
+            ..self
+        })
+    }
+
+    /// Its shape, as a solid if `filled` or if it was one.
+    pub(crate) fn shape(&self, filled: bool) -> PyResult<ObjectShape> {
+        let mesh = Arc::clone(&self.mesh);
+        if filled || self.solid {
+            let solid = Solid::mesh(mesh).map_err(value_error)?;
+            let placed = if self.world_from_mesh == DAffine3::IDENTITY {
+                solid
+            } else {
+                solid.transform(self.world_from_mesh).map_err(value_error)?
+            };
+            return Ok(ObjectShape::Solid(placed));
+        }
+        Ok(ObjectShape::Sheet(Sheet::Mesh {
+            mesh,
+            world_from_mesh: self.world_from_mesh,
+        }))
+    }
+}
+
 /// Vertices from an array of shape (N, 3).
 pub(crate) fn positions(vertices: &Bound<'_, PyAny>) -> PyResult<Vec<DVec3>> {
     let array = real_array("vertices", vertices, Shape::rows("N", 3))?;
-    Ok(array
-        .as_slice()?
-        .as_chunks::<3>()
-        .0
-        .iter()
-        .copied()
-        .map(DVec3::from_array)
-        .collect())
+    let rows = array.as_slice()?.as_chunks::<3>().0;
+    Ok(rows.iter().copied().map(DVec3::from_array).collect())
 }
 
 /// A mesh from vertices of shape (N, 3) and triangles of shape (M, 3).

@@ -151,13 +151,16 @@ impl Hits {
     /// Distances in units of the rays' directions, float64; infinite for a miss.
     #[getter]
     fn t<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
-        self.rays.shaped(py, self.hits.iter().map(|hit| hit.t).collect())
+        self.rays
+            .shaped(py, self.hits.iter().map(|hit| hit.t).collect())
     }
 
     /// Ids of the objects (indices into `Scene.names`), int64; -1 for a miss.
     #[getter]
     fn object_id<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArrayDyn<i64>>> {
-        self.ids(py, |hit| self.world.owner(hit.face).map(|(object, _)| object.0))
+        self.ids(py, |hit| {
+            self.world.owner(hit.face).map(|(object, _)| object.0)
+        })
     }
 
     /// Ids of the faces, unique in the scene, int64; -1 for a miss.
@@ -181,7 +184,8 @@ impl Hits {
     /// Whether the ray met something, shape of `t`.
     #[getter]
     fn hit<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArrayDyn<bool>>> {
-        self.rays.shaped(py, self.hits.iter().map(|hit| !hit.is_miss()).collect())
+        self.rays
+            .shaped(py, self.hits.iter().map(|hit| !hit.is_miss()).collect())
     }
 
     fn __len__(&self) -> usize {

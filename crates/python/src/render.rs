@@ -4,7 +4,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::time::{Duration, Instant};
 
-use octray::render::{Crop, Observer, Plan, RenderConfig, RenderJob, Rendering};
+use octray::render::{Crop, Observer, RenderConfig, RenderJob, Rendering};
 use octray::scene::{Camera, Settings, View};
 use octray::world::World;
 use pyo3::exceptions::{PyKeyboardInterrupt, PyValueError};
@@ -77,14 +77,36 @@ impl Request<'_, '_> {
     }
 }
 
-/// Checks what can be checked without a scene; nothing is allocated.
-pub(crate) fn check(request: &Request<'_, '_>) -> PyResult<Plan> {
-    request.keeps_partial()?;
-    crate::world::accel_named(request.accel)?;
-    request.view.map(view_named).transpose()?;
+/// Checks the size of a picture before a scene is read; nothing is allocated.
+#[pyfunction]
+#[pyo3(signature = (*, size = None, spp = 1, threads = None, crop = None, max_depth = None, threshold = None))]
+pub(crate) fn check_request(
+    size: Option<(u32, u32)>,
+    spp: u32,
+    threads: Option<usize>,
+    crop: Option<(u32, u32, u32, u32)>,
+    max_depth: Option<u32>,
+    threshold: Option<f64>,
+) -> PyResult<()> {
+    let request = Request {
+        size,
+        spp,
+        threads,
+        accel: "auto",
+        // Whether it lies in the picture is known with the picture's size.
+        crop: crop.filter(|_| size.is_some()),
+        view: None,
+        max_depth,
+        threshold,
+        seed: 0,
+        progress: None,
+        preview: None,
+        on_interrupt: "raise",
+    };
+    pool(threads)?;
     let settings = Settings::default();
     let config = request.config(&settings)?;
-    config.plan(&settings).map_err(value_error)
+    config.plan(&settings).map(|_| ()).map_err(value_error)
 }
 
 /// Passes progress out of, and the wish to stop into, the threads that render.
@@ -118,11 +140,7 @@ struct Job {
 type Outcome = Result<(Rendering, Duration), octray::render::RenderError>;
 
 impl Job {
-    fn run(
-        &self,
-        cancel: &AtomicBool,
-        send: &dyn Fn(octray::render::Image),
-    ) -> Outcome {
+    fn run(&self, cancel: &AtomicBool, send: &dyn Fn(octray::render::Image)) -> Outcome {
         let watch = Watch {
             cancel,
             done: &self.done,
@@ -213,20 +231,17 @@ struct Watcher<'py> {
 
 impl<'py> Watcher<'py> {
     fn new(request: &Request<'_, 'py>, view: View) -> PyResult<Self> {
-        let mut progress = request.progress.cloned().filter(|p| !p.is_none());
-        let mut bar = None;
-        if let Some(given) = &progress
-            && let Ok(wanted) = given.extract::<bool>()
-        {
-            progress = None;
-            if wanted {
+        let given = request.progress.filter(|p| !p.is_none());
+        let (progress, bar) = match given.map(|p| (p, p.extract::<bool>())) {
+            None | Some((_, Ok(false))) => (None, None),
+            Some((given, Ok(true))) => {
                 let module = given.py().import("octray.cli.progress")?;
-                let made = module.call_method1("Progress", ("render", "auto"))?;
-                made.call_method0("__enter__")?;
-                bar = Some(made.clone());
-                progress = Some(made);
+                let bar = module.call_method1("Progress", ("render", "auto"))?;
+                bar.call_method0("__enter__")?;
+                (Some(bar.clone()), Some(bar))
             }
-        }
+            Some((given, Err(_))) => (Some(given.clone()), None),
+        };
         Ok(Self {
             progress,
             preview: request.preview.cloned().filter(|p| !p.is_none()),

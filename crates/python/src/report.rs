@@ -3,7 +3,7 @@
 use std::time::Duration;
 
 use octray::render::{RayCounts, Rendering};
-use octray::world::{CellTreeStats, WideTreeStats};
+use octray::world::CellTreeStats;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
@@ -31,10 +31,12 @@ fn cells<'py>(py: Python<'py>, stats: &CellTreeStats) -> PyResult<Bound<'py, PyD
     Ok(dict)
 }
 
-fn wide<'py>(py: Python<'py>, stats: &WideTreeStats) -> PyResult<Bound<'py, PyDict>> {
-    let dict = PyDict::new(py);
-    let _ = stats;
-    Ok(dict)
+/// The most memory this process has had so far, where the system tells.
+fn peak_bytes() -> Option<u64> {
+    let status = std::fs::read_to_string("/proc/self/status").ok()?;
+    let line = status.lines().find(|line| line.starts_with("VmHWM:"))?;
+    let kibibytes: u64 = line.split_whitespace().nth(1)?.parse().ok()?;
+    Some(kibibytes * 1024)
 }
 
 /// Seconds, rays, tests per ray, trees, memory.
@@ -49,12 +51,16 @@ pub(crate) fn rendering(
     let plan = &rendering.plan;
     report.set_item("size", plan.size)?;
     let crop = plan.crop;
-    report.set_item("crop", (crop.x, crop.y, crop.x + crop.width, crop.y + crop.height))?;
+    report.set_item(
+        "crop",
+        (crop.x, crop.y, crop.x + crop.width, crop.y + crop.height),
+    )?;
     report.set_item("spp", plan.spp)?;
     report.set_item("max_depth", plan.max_generations)?;
     report.set_item("contribution_threshold", plan.contribution_threshold)?;
     report.set_item("threads", threads)?;
     report.set_item("complete", rendering.is_complete())?;
+    report.set_item("finished_pixels", rendering.film.complete_pixels())?;
 
     let phases = PyDict::new(py);
     phases.set_item("build_s", prepared.duration.as_secs_f64())?;
@@ -80,9 +86,10 @@ pub(crate) fn rendering(
     let trees = PyDict::new(py);
     let cell_tree = world.cells.as_ref().map(|s| cells(py, s)).transpose()?;
     trees.set_item("cells", cell_tree)?;
-    let wide_tree = world.wide.as_ref().map(|s| wide(py, s)).transpose()?;
-    trees.set_item("wide", wide_tree)?;
     report.set_item("trees", trees)?;
+    let memory = PyDict::new(py);
+    memory.set_item("peak_bytes", peak_bytes())?;
+    report.set_item("memory", memory)?;
     let built = PyDict::new(py);
     built.set_item("objects", world.objects)?;
     built.set_item("surfaces", world.surfaces)?;

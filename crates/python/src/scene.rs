@@ -1,9 +1,14 @@
 //! The scene: a builder that Python code adds to.
 
+use numpy::PyArrayDyn;
+use octray::geometry::Sheet;
+use octray::import::dress;
 use octray::math::DVec3;
 use octray::scene::{
-    self, Background, Color, ColorStop, MaterialId, Object, SceneBuilder, SceneError,
+    self, Background, Color, ColorStop, MaterialId, Object, SceneBuilder, SceneError, Settings,
+    Shape,
 };
+use octray::world::Accel;
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -11,9 +16,14 @@ use pyo3::types::PyDict;
 use crate::camera::Camera;
 use crate::convert::{color, number_or_color, vector};
 use crate::diagnostics::{Diagnostic, invalid_scene};
+use crate::image::Image;
 use crate::light::Light;
 use crate::material::material;
+use crate::mesh;
+use crate::queries::{self, Hits};
+use crate::render::{self, Request};
 use crate::solid::Solid;
+use crate::world::{Prepared, completed, prepared};
 
 /// Objects, lights, a camera and a background.
 #[pyclass(module = "octray")]
@@ -80,19 +90,72 @@ impl Scene {
         &mut self.builder
     }
 
-    fn add_named(&mut self, mut object: Object, common: &Common<'_, '_>) -> PyResult<u32> {
-        if let Some(name) = common.name {
-            name.clone_into(&mut object.name);
-        } else if object.name.is_empty() {
-            object.name = format!("object {}", self.builder.so_far().objects().len());
-        }
-        if let Some(given) = common.material.filter(|m| !m.is_none()) {
-            object.material = self.material_id(material(given)?);
-        }
-        object.priority = common.priority;
-        object.casts_shadows = common.shadows;
-        Ok(self.changed().add_object(object).0)
+    fn add_shape(
+        &mut self,
+        shape: Shape,
+        name: &str,
+        material: MaterialId,
+        common: &Common<'_, '_>,
+    ) -> u32 {
+        let name = match common.name.unwrap_or(name) {
+            "" => format!("object {}", self.builder.so_far().objects().len()),
+            name => name.to_owned(),
+        };
+        let object = Object {
+            name,
+            shape,
+            material,
+            priority: common.priority,
+            casts_shadows: common.shadows,
+        };
+        self.changed().add_object(object).0
     }
+
+    /// Adds a mesh that stands alone (`look` is `None`) or in a file with materials of its own.
+    fn adopt(
+        &mut self,
+        shape: &Shape,
+        name: &str,
+        look: Option<(&[scene::Material], MaterialId)>,
+        filled: bool,
+        common: &Common<'_, '_>,
+    ) -> PyResult<u32> {
+        let placed = mesh::Placed::of(shape).ok_or_else(|| {
+            PyValueError::new_err(format!(
+                "`{name}` is no mesh; octray.load reads files of solids"
+            ))
+        })?;
+        let given = common.material.map(|m| self.wanted_material(Some(m)));
+        let (placed, material) = match (given.transpose()?, look) {
+            (Some(id), _) => (placed.with_ids(|_| id)?, id),
+            (None, Some((materials, own))) => {
+                let ids: Vec<MaterialId> = materials
+                    .iter()
+                    .map(|m| self.material_id(m.clone()))
+                    .collect();
+                let new = |old: MaterialId| ids[old.0 as usize];
+                (placed.with_ids(new)?, new(own))
+            }
+            (None, None) => (placed, self.wanted_material(None)?),
+        };
+        Ok(self.add_shape(placed.shape(filled)?, name, material, common))
+    }
+
+    fn wanted_material(&mut self, given: Option<&Bound<'_, PyAny>>) -> PyResult<MaterialId> {
+        let wanted = match given {
+            Some(object) => material(object)?,
+            None => dress::default_material(),
+        };
+        Ok(self.material_id(wanted))
+    }
+}
+
+/// What is said about an object of any kind.
+struct Common<'a, 'py> {
+    name: Option<&'a str>,
+    material: Option<&'a Bound<'py, PyAny>>,
+    priority: i32,
+    shadows: bool,
 }
 
 #[pymethods]
@@ -126,15 +189,15 @@ impl Scene {
                 "expected a solid; meshes are added with add_mesh, lights with add_light",
             )
         })?;
-        let id = self.material_id(dress::default_material());
-        let object = Object::solid("", solid.get().inner().clone(), id);
         let common = Common {
             name,
             material,
             priority,
             shadows,
         };
-        self.add_named(object, &common)
+        let id = self.wanted_material(material)?;
+        let shape = Shape::Solid(solid.get().inner().clone());
+        Ok(self.add_shape(shape, "", id, &common))
     }
 
     /// Adds a mesh: the path of a mesh file, a pair (vertices, faces), or anything that has
@@ -159,27 +222,23 @@ impl Scene {
             priority,
             shadows,
         };
-        let parts = mesh::parts(mesh)?;
-        self.diagnostics.extend(parts.diagnostics);
-        let mut first = None;
-        for part in parts.meshes {
-            let ids: Vec<MaterialId> = part
-                .materials
-                .into_iter()
-                .map(|m| self.material_id(m))
-                .collect();
-            let (triangles, material) = part.mesh.with_ids(&ids, common.material.is_some())?;
-            let material = material.unwrap_or_else(|| self.material_id(dress::default_material()));
-            let object = if solid {
-                let filled = octray::geometry::Solid::mesh(triangles).map_err(value_error)?;
-                Object::solid(part.name, filled, material)
-            } else {
-                Object::sheet(part.name, Sheet::mesh(triangles), material)
-            };
-            let id = self.add_named(object, &common)?;
-            first.get_or_insert(id);
+        match mesh::Source::of(mesh)? {
+            mesh::Source::Arrays(mesh) => {
+                let shape = Shape::Sheet(Sheet::mesh(mesh));
+                self.adopt(&shape, "", None, solid, &common)
+            }
+            mesh::Source::File(path) => {
+                let (file, said) = crate::load::read(mesh.py(), &path, false)?;
+                let mut first = None;
+                for object in file.objects() {
+                    let look = Some((file.materials(), object.material));
+                    let id = self.adopt(&object.shape, &object.name, look, solid, &common)?;
+                    first.get_or_insert(id);
+                }
+                self.diagnostics.extend(said);
+                first.ok_or_else(|| PyValueError::new_err("the file has no mesh in it"))
+            }
         }
-        first.ok_or_else(|| PyValueError::new_err("the file has no mesh in it"))
     }
 
     /// Adds a light.
@@ -195,11 +254,31 @@ impl Scene {
 
     #[setter]
     fn set_camera(&mut self, camera: &Camera) {
-        self.changed().set_camera(*camera.inner());
+        // The trees do not depend on it, but the lights of a scene without any do.
+        if self.imported || !self.builder.so_far().lights().is_empty() {
+            self.builder.set_camera(*camera.inner());
+        } else {
+            self.changed().set_camera(*camera.inner());
+        }
     }
 
-    /// What rays see that meet nothing: a colour, or a list of colours from straight down to
-    /// straight up.
+    /// Puts a camera where it sees everything, from the front and a little from above.
+    fn view_all(&mut self) -> PyResult<()> {
+        let scene = self.builder.so_far();
+        let camera = dress::view_all(&scene.bounds(), scene.settings().up).ok_or_else(|| {
+            PyValueError::new_err("there is nothing bounded in the scene to look at")
+        })?;
+        self.set_camera(&Camera::new(camera));
+        Ok(())
+    }
+
+    /// What rays see that meet nothing: colours from straight down to straight up. Set it to one
+    /// colour, or to a list of two or more.
+    #[getter]
+    fn background(&self) -> Vec<[f64; 3]> {
+        crate::describe::background(self.builder.so_far().background())
+    }
+
     #[setter]
     fn set_background(&mut self, background: &Bound<'_, PyAny>) -> PyResult<()> {
         let finite = |c: DVec3| {
@@ -252,6 +331,86 @@ impl Scene {
     #[getter]
     fn diagnostics(&self) -> Vec<Diagnostic> {
         self.diagnostics.clone()
+    }
+
+    /// Builds the trees now rather than with the first picture or query.
+    #[pyo3(signature = (*, accel = "auto", threads = None))]
+    fn prepare(slf: &Bound<'_, Self>, accel: &str, threads: Option<usize>) -> PyResult<()> {
+        prepared(slf, accel, threads).map(|_| ())
+    }
+
+    /// Renders a picture.
+    #[pyo3(signature = (
+        *, size = None, spp = 1, threads = None, accel = "auto", crop = None, view = None,
+        max_depth = None, threshold = None, seed = 0, progress = None, preview = None,
+        on_interrupt = "raise"
+    ))]
+    #[expect(clippy::too_many_arguments, reason = "all by keyword")]
+    fn render(
+        slf: &Bound<'_, Self>,
+        size: Option<(u32, u32)>,
+        spp: u32,
+        threads: Option<usize>,
+        accel: &str,
+        crop: Option<(u32, u32, u32, u32)>,
+        view: Option<&str>,
+        max_depth: Option<u32>,
+        threshold: Option<f64>,
+        seed: u64,
+        progress: Option<&Bound<'_, PyAny>>,
+        preview: Option<&Bound<'_, PyAny>>,
+        on_interrupt: &str,
+    ) -> PyResult<Image> {
+        let request = Request {
+            size,
+            spp,
+            threads,
+            accel,
+            crop,
+            view,
+            max_depth,
+            threshold,
+            seed,
+            progress,
+            preview,
+            on_interrupt,
+        };
+        render::render(slf, &request)
+    }
+
+    /// The nearest surface on each ray of an array (..., 6): origin and direction. `t` counts in
+    /// units of the direction; only t > 0 counts; a ray with NaN or without direction misses.
+    #[pyo3(signature = (rays, *, accel = "auto", threads = None))]
+    fn cast_rays(
+        slf: &Bound<'_, Self>,
+        rays: &Bound<'_, PyAny>,
+        accel: &str,
+        threads: Option<usize>,
+    ) -> PyResult<Hits> {
+        queries::cast_rays(slf, rays, (accel, threads))
+    }
+
+    /// How many boundaries each ray crosses at t > 0, entries and exits each one, int64.
+    #[pyo3(signature = (rays, *, accel = "auto", threads = None))]
+    fn count_intersections<'py>(
+        slf: &Bound<'py, Self>,
+        rays: &Bound<'py, PyAny>,
+        accel: &str,
+        threads: Option<usize>,
+    ) -> PyResult<Bound<'py, PyArrayDyn<i64>>> {
+        queries::count_intersections(slf, rays, (accel, threads))
+    }
+
+    /// Whether each ray meets anything at 0 < t < tfar.
+    #[pyo3(signature = (rays, *, tfar = f64::INFINITY, accel = "auto", threads = None))]
+    fn test_occlusions<'py>(
+        slf: &Bound<'py, Self>,
+        rays: &Bound<'py, PyAny>,
+        tfar: f64,
+        accel: &str,
+        threads: Option<usize>,
+    ) -> PyResult<Bound<'py, PyArrayDyn<bool>>> {
+        queries::test_occlusions(slf, rays, tfar, (accel, threads))
     }
 
     /// Everything in the scene as plain dictionaries, lists and numbers, ready for JSON.

@@ -65,7 +65,8 @@ impl<T: Send + 'static, M: Send + 'static> Task<T, M> {
 
     /// Waits for the next thing to happen, with the interpreter released.
     pub(crate) fn next(&mut self, py: Python<'_>) -> PyResult<Event<T, M>> {
-        match py.detach(|| self.results.recv_timeout(TICK)) {
+        let results = &mut self.results;
+        match py.detach(move || results.recv_timeout(TICK)) {
             Ok(Sent::Message(message)) => Ok(Event::Message(message)),
             Ok(Sent::Result(result)) => Ok(Event::Result(result)),
             Err(RecvTimeoutError::Timeout) => Ok(Event::Tick),

@@ -76,8 +76,8 @@ pub(crate) fn prepared(
 /// The scene with a camera, and, if `dressed` and it has no lights, with lights about it and a
 /// background where it has none.
 pub(crate) fn completed(scene: scene::Scene, dressed: bool) -> scene::Scene {
-    let own_background = (*scene.background() != scene::Background::default())
-        .then(|| scene.background().clone());
+    let own_background =
+        (*scene.background() != scene::Background::default()).then(|| scene.background().clone());
     let up = scene.settings().up;
     let mut scene = scene;
     if scene.camera().is_none() && dress::view_all(&scene.bounds(), up).is_none() {

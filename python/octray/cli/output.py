@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-import contextlib
 import os
 import sys
-import tempfile
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
@@ -17,59 +15,40 @@ if TYPE_CHECKING:
     from octray import Image
 
 View = Literal["neutral", "standard", "raw"]
-FORMATS = {".png": "png", ".exr": "exr"}
 
 
 class Output:
     """A place for one picture, checked before the work starts."""
 
-    def __init__(self, given: str | None, scene: Path) -> None:
+    def __init__(self, given: str | None, scene: str) -> None:
         """Take ``-o``; by default the scene's name with ``.png``, in the current directory."""
         self.to_stdout = given == "-"
-        name = given if given is not None else f"{scene.stem or 'octray'}.png"
-        self.path = Path(name)
+        self.path = Path(f"{Path(scene).stem or 'octray'}.png" if given is None else given)
+        self.name = "standard output" if self.to_stdout else str(self.path)
+        self.format = "png" if self.to_stdout else self.path.suffix.lower().removeprefix(".")
+        self.written = False
         if self.to_stdout:
-            self.format = "png"
             if sys.stdout.isatty():
                 raise click.UsageError("-o - writes a PNG: redirect standard output to a file")
             return
-        suffix = self.path.suffix.lower()
-        if suffix not in FORMATS:
-            raise click.UsageError(f"-o {name}: the name must end in .png or .exr (or be -)")
-        self.format = FORMATS[suffix]
+        if self.format not in {"png", "exr"}:
+            raise click.UsageError(f"-o {given}: the name must end in .png or .exr (or be -)")
         folder = self.path.parent
         if not folder.is_dir():
-            raise FailureError(f"{name}: there is no directory {folder}")
+            raise FailureError(f"{self.path}: there is no directory {folder}")
         if self.path.is_dir():
-            raise FailureError(f"{name} is a directory")
+            raise FailureError(f"{self.path} is a directory")
         if not os.access(folder, os.W_OK):
-            raise FailureError(f"{name}: no permission to write to {folder}")
+            raise FailureError(f"{self.path}: no permission to write to {folder}")
 
     def write(self, image: Image, view: View | None) -> None:
-        """Write the picture."""
-        data = image.to_bytes(self.format, view=view)
+        """Write the picture, or write it again."""
         if self.to_stdout:
-            sys.stdout.buffer.write(data)
+            sys.stdout.buffer.write(image.to_bytes("png", view=view))
             sys.stdout.buffer.flush()
-            return
-        try:
-            replace_file(self.path, data)
-        except OSError as error:
-            raise FailureError(f"{self.path}: {error.strerror or error}") from error
-
-
-def replace_file(path: Path, data: bytes) -> None:
-    """Write ``data`` beside ``path``, then rename: nobody ever sees half a file."""
-    handle, temporary = tempfile.mkstemp(prefix=f".{path.name}.", dir=path.parent)
-    try:
-        with os.fdopen(handle, "wb") as file:
-            file.write(data)
-        # mkstemp makes private files; a picture gets the permissions any new file gets.
-        mask = os.umask(0)
-        os.umask(mask)
-        Path(temporary).chmod(0o666 & ~mask)
-        Path(temporary).replace(path)
-    except BaseException:
-        with contextlib.suppress(OSError):
-            Path(temporary).unlink()
-        raise
+        else:
+            try:
+                image.save(self.path, view=view)
+            except OSError as error:
+                raise FailureError(f"{self.path}: {error.strerror or error}") from error
+        self.written = True

@@ -8,7 +8,6 @@ import time
 from typing import TYPE_CHECKING, Literal
 
 if TYPE_CHECKING:
-    from types import TracebackType
     from typing import TextIO
 
 Style = Literal["auto", "bar", "plain", "none"]
@@ -54,16 +53,18 @@ class Progress:
         self._start = time.monotonic()
         return self
 
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
+    def __exit__(self, *details: object) -> None:
         """Take the line away."""
         if self._drawn:
             self._stream.write("\r\x1b[K")
             self._stream.flush()
+
+    def announce(self) -> None:
+        """Show the name alone, for what cannot say how far it is; only where it can go away."""
+        if self._style == "bar":
+            self._stream.write(f"\r\x1b[K{self._label} ...")
+            self._stream.flush()
+            self._drawn = True
 
     def __call__(self, fraction: float) -> None:
         """Show that ``fraction`` (0 to 1) is done."""

@@ -1,0 +1,309 @@
+"""Types of the compiled module."""
+
+import os
+from collections.abc import Callable, Iterable, Sequence
+from typing import Any, Literal, Protocol, SupportsIndex, TypeAlias, TypedDict, final
+
+import numpy as np
+import numpy.typing as npt
+from typing_extensions import Unpack
+
+__version__: str
+
+_Vector: TypeAlias = Iterable[float]
+_Color: TypeAlias = str | Iterable[float]
+_Path: TypeAlias = str | os.PathLike[str]
+_Bounds: TypeAlias = tuple[list[float], list[float]]
+_Floats: TypeAlias = npt.NDArray[np.float64]
+_Integers: TypeAlias = npt.NDArray[np.int64]
+_Booleans: TypeAlias = npt.NDArray[np.bool_]
+_Accel: TypeAlias = Literal["auto", "brute"]
+_View: TypeAlias = Literal["neutral", "standard", "raw"]
+
+class _Triangles(Protocol):
+    @property
+    def vertices(self) -> npt.ArrayLike: ...
+    @property
+    def faces(self) -> npt.ArrayLike: ...
+
+_Mesh: TypeAlias = _Path | tuple[npt.ArrayLike, npt.ArrayLike] | _Triangles
+
+class RenderOptions(TypedDict, total=False):
+    size: tuple[int, int] | None
+    spp: int
+    threads: int | None
+    accel: _Accel
+    crop: tuple[int, int, int, int] | None
+    view: _View | None
+    max_depth: int | None
+    threshold: float | None
+    seed: int
+    progress: bool | Callable[[float], object] | None
+    preview: Callable[[Image], object] | None
+    on_interrupt: Literal["raise", "return"]
+
+@final
+class Diagnostic:
+    @property
+    def severity(self) -> Literal["error", "warning"]: ...
+    @property
+    def message(self) -> str: ...
+    @property
+    def help(self) -> str | None: ...
+    @property
+    def file(self) -> str | None: ...
+    @property
+    def line(self) -> int | None: ...
+    @property
+    def column(self) -> int | None: ...
+    @property
+    def text(self) -> str: ...
+
+class SceneError(ValueError):
+    diagnostics: list[Diagnostic]
+
+@final
+class Solid:
+    def __add__(self, other: Solid, /) -> Solid: ...
+    def __radd__(self, other: Solid, /) -> Solid: ...
+    def __sub__(self, other: Solid, /) -> Solid: ...
+    def __rsub__(self, other: Solid, /) -> Solid: ...
+    def __and__(self, other: Solid, /) -> Solid: ...
+    def __rand__(self, other: Solid, /) -> Solid: ...
+    def __invert__(self) -> Solid: ...
+    def complement(self) -> Solid: ...
+    def translate(self, x: float = 0.0, y: float = 0.0, z: float = 0.0) -> Solid: ...
+    def rotate(self, x: float = 0.0, y: float = 0.0, z: float = 0.0) -> Solid: ...
+    def scale(self, factor: float | _Vector) -> Solid: ...
+    def mirror(self, normal: _Vector) -> Solid: ...
+    def transform(self, matrix: npt.ArrayLike) -> Solid: ...
+    @property
+    def bounds(self) -> _Bounds | None: ...
+
+def box(size: float | _Vector, center: bool = True) -> Solid: ...
+def sphere(r: float) -> Solid: ...
+def cylinder(r: float, h: float, center: bool = True) -> Solid: ...
+def cone(r1: float, r2: float, h: float, center: bool = True) -> Solid: ...
+def torus(R: float, r: float) -> Solid: ...
+def half_space(normal: _Vector, d: float = 0.0) -> Solid: ...
+def polyhedron(vertices: npt.ArrayLike, faces: Iterable[Iterable[SupportsIndex]]) -> Solid: ...
+def mesh_solid(vertices: npt.ArrayLike, faces: npt.ArrayLike) -> Solid: ...
+def empty() -> Solid: ...
+def union(*solids: Solid | Iterable[Solid]) -> Solid: ...
+def intersection(*solids: Solid | Iterable[Solid]) -> Solid: ...
+def difference(*solids: Solid | Iterable[Solid]) -> Solid: ...
+
+@final
+class Material:
+    def __new__(
+        cls,
+        color: _Color | None = None,
+        *,
+        name: str = "material",
+        ambient: float | _Color | None = None,
+        emission: float | _Color | None = None,
+        diffuse: float = 0.9,
+        brilliance: float = 1.0,
+        phong: float = 0.0,
+        phong_size: float = 40.0,
+        specular: float = 0.0,
+        roughness: float = 0.05,
+        metallic: float = 0.0,
+        reflection: float | _Color | None = None,
+        fresnel: bool = False,
+        filter: float = 0.0,
+        transmit: float = 0.0,
+        ior: float = 1.0,
+        absorption: float | _Color | None = None,
+    ) -> Material: ...
+    @staticmethod
+    def glass(
+        ior: float = 1.5, *, absorption: float | _Color | None = None, name: str = "glass"
+    ) -> Material: ...
+    @staticmethod
+    def mirror(color: _Color | None = None, *, name: str = "mirror") -> Material: ...
+    @staticmethod
+    def checker(
+        first: _Color,
+        second: _Color,
+        size: float | _Vector | None = None,
+        *,
+        reflection: float | _Color | None = None,
+        name: str = "checker",
+    ) -> Material: ...
+    @property
+    def name(self) -> str: ...
+    def __eq__(self, other: object, /) -> bool: ...
+    def __ne__(self, other: object, /) -> bool: ...
+
+class Light: ...
+
+@final
+class PointLight(Light):
+    def __new__(
+        cls,
+        position: _Vector,
+        color: _Color | None = None,
+        *,
+        strength: float = 1.0,
+        falloff: Literal["none", "inverse_square"] = "none",
+        shadows: bool = True,
+    ) -> PointLight: ...
+
+@final
+class SpotLight(Light):
+    def __new__(
+        cls,
+        position: _Vector,
+        target: _Vector,
+        color: _Color | None = None,
+        *,
+        inner: float = 20.0,
+        outer: float = 30.0,
+        tightness: float = 0.0,
+        strength: float = 1.0,
+        falloff: Literal["none", "inverse_square"] = "none",
+        shadows: bool = True,
+    ) -> SpotLight: ...
+
+@final
+class DirectionalLight(Light):
+    def __new__(
+        cls,
+        direction: _Vector,
+        color: _Color | None = None,
+        *,
+        strength: float = 1.0,
+        shadows: bool = True,
+    ) -> DirectionalLight: ...
+
+@final
+class Camera:
+    @staticmethod
+    def look_at(
+        eye: _Vector,
+        target: _Vector | None = None,
+        up: _Vector | None = None,
+        fov: float = 40.0,
+    ) -> Camera: ...
+    @staticmethod
+    def orthographic(
+        eye: _Vector,
+        target: _Vector | None = None,
+        up: _Vector | None = None,
+        *,
+        height: float,
+    ) -> Camera: ...
+    @property
+    def eye(self) -> list[float]: ...
+    def __eq__(self, other: object, /) -> bool: ...
+    def __ne__(self, other: object, /) -> bool: ...
+
+@final
+class Image:
+    @property
+    def width(self) -> int: ...
+    @property
+    def height(self) -> int: ...
+    @property
+    def size(self) -> tuple[int, int]: ...
+    @property
+    def complete(self) -> bool: ...
+    @property
+    def report(self) -> dict[str, Any]: ...
+    def to_numpy(self) -> npt.NDArray[np.float32]: ...
+    def __array__(
+        self, dtype: npt.DTypeLike | None = None, copy: bool | None = None
+    ) -> npt.NDArray[Any]: ...
+    def to_bytes(
+        self, format: Literal["png", "exr"] = "png", *, view: _View | None = None
+    ) -> bytes: ...
+    def save(self, path: _Path, *, view: _View | None = None) -> None: ...
+    def _repr_png_(self) -> bytes: ...
+    def equals(self, other: Image) -> bool: ...
+
+@final
+class Hits:
+    @property
+    def t(self) -> _Floats: ...
+    @property
+    def object_id(self) -> _Integers: ...
+    @property
+    def face_id(self) -> _Integers: ...
+    @property
+    def normal(self) -> _Floats: ...
+    @property
+    def position(self) -> _Floats: ...
+    @property
+    def hit(self) -> _Booleans: ...
+    def __len__(self) -> int: ...
+
+@final
+class Scene:
+    @property
+    def camera(self) -> Camera | None: ...
+    @camera.setter
+    def camera(self, value: Camera, /) -> None: ...
+    def __new__(cls, *, units: str = "", up: _Vector | None = None) -> Scene: ...
+    def add(
+        self,
+        solid: Solid,
+        *,
+        name: str | None = None,
+        material: Material | _Color | None = None,
+        priority: int = 0,
+        shadows: bool = True,
+    ) -> int: ...
+    def add_mesh(
+        self,
+        mesh: _Mesh,
+        *,
+        name: str | None = None,
+        material: Material | _Color | None = None,
+        solid: bool = False,
+        priority: int = 0,
+        shadows: bool = True,
+    ) -> int: ...
+    def add_light(self, light: Light) -> None: ...
+    @property
+    def background(self) -> list[list[float]]: ...
+    @background.setter
+    def background(self, value: float | _Color | Sequence[_Color], /) -> None: ...
+    def view_all(self) -> None: ...
+    @property
+    def names(self) -> list[str]: ...
+    @property
+    def bounds(self) -> _Bounds | None: ...
+    @property
+    def diagnostics(self) -> list[Diagnostic]: ...
+    def describe(self) -> dict[str, Any]: ...
+    def prepare(self, *, accel: _Accel = "auto", threads: int | None = None) -> None: ...
+    def render(self, **options: Unpack[RenderOptions]) -> Image: ...
+    def cast_rays(
+        self, rays: npt.ArrayLike, *, accel: _Accel = "auto", threads: int | None = None
+    ) -> Hits: ...
+    def count_intersections(
+        self, rays: npt.ArrayLike, *, accel: _Accel = "auto", threads: int | None = None
+    ) -> _Integers: ...
+    def test_occlusions(
+        self,
+        rays: npt.ArrayLike,
+        *,
+        tfar: float = ...,
+        accel: _Accel = "auto",
+        threads: int | None = None,
+    ) -> _Booleans: ...
+    def __len__(self) -> int: ...
+
+def load(path: _Path, *, facets: bool = False) -> Scene: ...
+def check_request(
+    *,
+    size: tuple[int, int] | None = None,
+    spp: int = 1,
+    threads: int | None = None,
+    crop: tuple[int, int, int, int] | None = None,
+    max_depth: int | None = None,
+    threshold: float | None = None,
+) -> None: ...
+def cpu_features() -> list[str]: ...
+def default_threads() -> int: ...

@@ -1,0 +1,245 @@
+"""``octray render``: a scene file in, a picture out."""
+
+from __future__ import annotations
+
+import time
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from octray.cli.exits import Exit, FailureError
+from octray.cli.messages import RejectedSceneError, load
+from octray.cli.options import parse_crop, parse_size, scene_argument
+from octray.cli.output import Output
+from octray.cli.progress import Progress, duration
+from octray.cli.report import Report
+
+if TYPE_CHECKING:
+    from octray import Image, Scene
+
+
+@click.command("render", epilog="Example: octray render part.stl -o part.png --size 1920x1080")
+@scene_argument
+@click.option(
+    "-o", "--output", metavar="FILE", help="Picture, .png or .exr; - is standard output (PNG)."
+)
+@click.option("--size", metavar="WxH", callback=parse_size, help="Size in pixels.")
+@click.option(
+    "--spp",
+    type=click.IntRange(min=1),
+    default=1,
+    show_default=True,
+    help="Samples per pixel; 1 is the pixel's centre.",
+)
+@click.option(
+    "--accel",
+    type=click.Choice(["auto", "brute"]),
+    default="auto",
+    show_default=True,
+    help="Octrees, or every surface for every ray: the same picture.",
+)
+@click.option(
+    "-j",
+    "--threads",
+    type=click.IntRange(min=1),
+    metavar="N",
+    envvar="OCTRAY_THREADS",
+    help="Threads; by default one for each processor.",
+)
+@click.option(
+    "--view",
+    type=click.Choice(["neutral", "standard", "raw"]),
+    help="How light becomes colours in a PNG; by default what suits the file.",
+)
+@click.option(
+    "--crop",
+    metavar="X0,Y0,X1,Y1",
+    callback=parse_crop,
+    help="Render only these pixels (row 0 at the top).",
+)
+@click.option("--viewall", is_flag=True, help="Move the camera to where it sees everything.")
+@click.option(
+    "--preview", is_flag=True, help="Write a coarse picture at once, then ever finer ones."
+)
+@click.option(
+    "--max-depth",
+    type=click.IntRange(min=1),
+    metavar="N",
+    help="Generations of rays; 1 is without mirrors and glass.",
+)
+@click.option(
+    "--threshold",
+    type=click.FloatRange(min=0),
+    metavar="X",
+    help="Rays that add less than this to a pixel are not followed.",
+)
+@click.option("--json", "as_json", is_flag=True, help="Print one report object.")
+@click.option(
+    "--progress",
+    type=click.Choice(["auto", "bar", "plain", "none"]),
+    default="auto",
+    show_default=True,
+    help="How progress is shown on standard error.",
+)
+@click.option("-q", "--quiet", is_flag=True, help="Only errors on standard error.")
+@click.option("-v", "--verbose", is_flag=True, help="Say what the rendering cost.")
+def command(scene: str, **options: Any) -> int:
+    """Render SCENE to a picture.
+
+    SCENE is a POV-Ray (.pov), OpenSCAD (.csg) or NFF (.nff) scene, or an OBJ, PLY or STL mesh,
+    which gets a camera and lights of its own. The picture is SCENE's name with .png in the
+    current directory, unless -o says something else.
+    """
+    return _Run(scene, options).run()
+
+
+class _Run:
+    """One invocation, from arguments to exit code."""
+
+    def __init__(self, path: str, options: dict[str, Any]) -> None:
+        self.path = path
+        self.options = options
+        if options["output"] == "-" and options["as_json"]:
+            raise click.UsageError("-o - and --json both want standard output")
+        if options["output"] == "-" and options["preview"]:
+            raise click.UsageError("--preview writes the picture several times: -o cannot be -")
+        self.report = Report(path, options)
+        self.style = "none" if options["quiet"] else options["progress"]
+
+    def run(self) -> int:
+        """Render; say what happened; print the report whatever happens after the arguments."""
+        self._check_arguments()
+        try:
+            code = self._render()
+        except RejectedSceneError as error:
+            self._say(f"octray: error: {error}")
+            self.report.add_messages(error.diagnostics)
+            code = error.code
+        except FailureError as error:
+            self._say(f"octray: error: {error}")
+            self.report.error = str(error)
+            code = error.code
+        except KeyboardInterrupt:
+            self._say("octray: interrupted; nothing was written")
+            code = Exit.INTERRUPTED
+        if self.options["as_json"]:
+            click.echo(self.report.to_json(code))
+        return code
+
+    @staticmethod
+    def _say(text: str) -> None:
+        click.echo(text, err=True)
+
+    def _check_arguments(self) -> None:
+        """Refuse what cannot be rendered before any file is read."""
+        from octray._core import check_request
+
+        try:
+            check_request(
+                **{
+                    name: self.options[name]
+                    for name in ("size", "spp", "threads", "crop", "max_depth", "threshold")
+                }
+            )
+        except ValueError as error:
+            raise click.UsageError(str(error)) from error
+
+    def _render(self) -> Exit:
+        options = self.options
+        output = Output(options["output"], self.path)
+        scene = self._load()
+        with self._phase("build"):
+            scene.prepare(accel=options["accel"], threads=options["threads"])
+        image = self._trace(scene, output)
+        self.report.add_rendering(image.report)
+        if not image.complete:
+            return self._keep_partial(image, output)
+        start = time.perf_counter()
+        output.write(image, options["view"])
+        self.report.phases["write_s"] = time.perf_counter() - start
+        self.report.add_output(output, image)
+        if not options["quiet"]:
+            self._say(self._summary(output, image))
+        if options["verbose"]:
+            self._say(self.report.details())
+        return Exit.OK
+
+    def _load(self) -> Scene:
+        with self._phase("import"):
+            scene = load(
+                self.path,
+                facets=self.options["facets"],
+                strict=self.options["strict"],
+                quiet=self.options["quiet"],
+            )
+        self.report.add_messages(scene.diagnostics)
+        if self.options["viewall"]:
+            try:
+                scene.view_all()
+            except ValueError as error:
+                raise FailureError(f"{self.path}: {error}", Exit.SCENE) from error
+        return scene
+
+    def _trace(self, scene: Scene, output: Output) -> Image:
+        options = self.options
+        view = options["view"]
+        with Progress("render", self.style) as progress:
+            try:
+                return scene.render(
+                    **{
+                        name: options[name]
+                        for name in ("size", "spp", "threads", "accel", "crop", "view")
+                    },
+                    max_depth=options["max_depth"],
+                    threshold=options["threshold"],
+                    progress=progress,
+                    preview=(lambda image: output.write(image, view))
+                    if options["preview"]
+                    else None,
+                    on_interrupt="return",
+                )
+            except ValueError as error:
+                raise click.UsageError(str(error)) from error
+
+    def _keep_partial(self, image: Image, output: Output) -> Exit:
+        if image.report["finished_pixels"] == 0 or output.to_stdout:
+            self._say("octray: interrupted; nothing was written")
+            return Exit.INTERRUPTED
+        output.write(image, self.options["view"])
+        self.report.add_output(output, image)
+        share = image.report["finished_pixels"] / (image.width * image.height)
+        self._say(f"octray: interrupted; {output.name} has the {share:.0%} that were finished")
+        return Exit.INTERRUPTED
+
+    def _phase(self, name: str) -> _Phase:
+        return _Phase(name, self.report, Progress(name, self.style))
+
+    def _summary(self, output: Output, image: Image) -> str:
+        phases = self.report.phases
+        rays = image.report["rays"]["total"]
+        rate = rays / max(phases["render_s"], 1e-9)
+        unit, scale = ("M", 1e6) if rate >= 1e6 else ("k", 1e3)
+        return (
+            f"{output.name}: {image.width}x{image.height} in {duration(sum(phases.values()))}"
+            f" (import {duration(phases['import_s'])}, build {duration(phases['build_s'])},"
+            f" render {duration(phases['render_s'])}), {rate / scale:.3g} {unit}rays/s"
+        )
+
+
+class _Phase:
+    """Times a phase that has no progress of its own; shows its name on a terminal."""
+
+    def __init__(self, name: str, report: Report, progress: Progress) -> None:
+        self._name = name
+        self._report = report
+        self._progress = progress
+        self._start = 0.0
+
+    def __enter__(self) -> None:
+        self._start = time.perf_counter()
+        self._progress.__enter__()
+        self._progress.announce()
+
+    def __exit__(self, *details: object) -> None:
+        self._progress.__exit__()
+        self._report.phases[f"{self._name}_s"] = time.perf_counter() - self._start
