@@ -2,10 +2,11 @@
 
 use std::sync::Arc;
 
-use octray_geometry::mesh::{Placement, TrianglePoint, TriangleRay};
+use octray_geometry::mesh::{Placement, TrianglePoint, TriangleTree};
 use octray_geometry::{FaceId, MaterialId, Sheet, TriangleMesh};
-use octray_math::DVec3;
+use octray_math::Interval;
 use octray_scene::{ObjectId, Scene, Shape};
+use octray_tree::{WalkCost, WideTreeConfig, WideTreeError};
 
 use crate::Counters;
 use crate::line::Line;
@@ -23,8 +24,7 @@ struct Part {
 #[derive(Debug)]
 pub(crate) struct Sheets {
     parts: Vec<Part>,
-    positions: Vec<DVec3>,
-    triangles: Vec<[u32; 3]>,
+    triangles: TriangleTree,
     first_face: u32,
 }
 
@@ -37,14 +37,19 @@ pub(crate) struct SheetHit {
 }
 
 impl Sheets {
-    /// The mesh sheets of the scene; their triangles' faces are numbered from `first_face`.
-    pub(crate) fn prepare(scene: &Scene, first_face: u32) -> Self {
-        let mut sheets = Self {
-            parts: Vec::new(),
-            positions: Vec::new(),
-            triangles: Vec::new(),
-            first_face,
-        };
+    /// The mesh sheets of the scene; their triangles' faces are numbered from `first_face`. With a
+    /// configuration they get an octree.
+    ///
+    /// # Errors
+    /// The octree would be too large.
+    pub(crate) fn prepare(
+        scene: &Scene,
+        first_face: u32,
+        config: Option<&WideTreeConfig>,
+    ) -> Result<Self, WideTreeError> {
+        let mut parts = Vec::new();
+        let mut positions = Vec::new();
+        let mut triangles: Vec<[u32; 3]> = Vec::new();
         for (index, object) in scene.objects().iter().enumerate() {
             if let Shape::Sheet(Sheet::Mesh {
                 mesh,
@@ -52,33 +57,33 @@ impl Sheets {
             }) = &object.shape
             {
                 let placement = Placement::new(world_from_mesh);
-                sheets.add(ObjectId(index as u32), mesh, placement);
+                let first_vertex = positions.len() as u32;
+                positions.extend(placement.positions(mesh));
+                let first_triangle = triangles.len() as u32;
+                let wound = mesh.triangles().iter().map(|&t| placement.wound(t));
+                triangles.extend(wound.map(|t| t.map(|i| i + first_vertex)));
+                parts.push(Part {
+                    object: ObjectId(index as u32),
+                    mesh: Arc::clone(mesh),
+                    placement,
+                    first_triangle,
+                });
             }
         }
-        sheets
+        Ok(Self {
+            parts,
+            triangles: TriangleTree::new(positions, triangles, config)?,
+            first_face,
+        })
     }
 
-    fn add(&mut self, object: ObjectId, mesh: &Arc<TriangleMesh>, placement: Placement) {
-        let first_vertex = self.positions.len() as u32;
-        self.positions.extend(placement.positions(mesh));
-        let first_triangle = self.triangles.len() as u32;
-        let wound = mesh.triangles().iter().map(|&t| placement.wound(t));
-        self.triangles
-            .extend(wound.map(|t| t.map(|i| i + first_vertex)));
-        self.parts.push(Part {
-            object,
-            mesh: Arc::clone(mesh),
-            placement,
-            first_triangle,
-        });
+    /// The triangles with their octree.
+    pub(crate) const fn triangles(&self) -> &TriangleTree {
+        &self.triangles
     }
 
     pub(crate) fn triangle_count(&self) -> usize {
         self.triangles.len()
-    }
-
-    fn corners(&self, triangle: u32) -> [DVec3; 3] {
-        self.triangles[triangle as usize].map(|i| self.positions[i as usize])
     }
 
     fn triangle(&self, face: FaceId) -> Option<u32> {
@@ -113,32 +118,21 @@ impl Sheets {
         if self.triangles.is_empty() {
             return;
         }
-        let ray = TriangleRay::new(&line.ray);
         let departed = self.triangle(line.departure.face);
-        let mut limit = limit.min(line.end);
-        let mut tests = 0;
-        let mut test = |triangle: u32| {
-            tests += 1;
-            if departed == Some(triangle) {
-                return limit;
-            }
-            if let Some(hit) = ray.intersect(self.corners(triangle))
-                && hit.t > line.origin
-                && hit.t <= limit
-            {
-                let face = FaceId(self.first_face + triangle);
-                limit = limit.min(visit(&SheetHit {
+        let span = Interval::new(line.origin, limit.min(line.end));
+        let mut cost = WalkCost::default();
+        self.triangles
+            .closest(&line.ray, span, &mut cost, |triangle, hit, end| {
+                if departed == Some(triangle) || hit.t <= line.origin {
+                    return end;
+                }
+                visit(&SheetHit {
                     s: hit.t,
-                    face,
+                    face: FaceId(self.first_face + triangle),
                     entering: hit.entering,
-                }));
-            }
-            limit
-        };
-        for triangle in 0..self.triangles.len() as u32 {
-            test(triangle);
-        }
-        counters.triangle_tests += tests;
+                })
+            });
+        counters.add_walk(&cost);
     }
 
     /// Shading data of a triangle that the line crosses.

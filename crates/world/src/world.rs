@@ -6,7 +6,7 @@ use octray_geometry::FaceId;
 use octray_geometry::mesh::MeshError;
 use octray_math::{Aabb, DVec3};
 use octray_scene::{Scene, Shape};
-use octray_tree::{CellTreeStats, Criteria};
+use octray_tree::{CellTreeStats, Criteria, WideTreeConfig, WideTreeError, WideTreeStats};
 use thiserror::Error;
 
 use crate::line::Line;
@@ -31,6 +31,8 @@ pub struct WorldConfig {
     pub accel: Accel,
     /// When to divide cells.
     pub criteria: Criteria,
+    /// How to build the octrees over triangles.
+    pub triangles: WideTreeConfig,
 }
 
 /// Why a scene cannot be made ready for rays.
@@ -44,6 +46,9 @@ pub enum WorldError {
         /// What is wrong with the mesh.
         error: MeshError,
     },
+    /// The octree over the triangles of sheets would be too large.
+    #[error(transparent)]
+    Triangles(#[from] WideTreeError),
     /// Faces and triangles together outnumber their ids.
     #[error("the scene has more than 2^30 faces and triangles")]
     TooManyFaces,
@@ -77,6 +82,8 @@ pub struct WorldStats {
     pub triangles: usize,
     /// The octree over the solids.
     pub cells: Option<CellTreeStats>,
+    /// The octree over the triangles of sheets.
+    pub triangle_tree: Option<WideTreeStats>,
 }
 
 /// Working memory is handed from query to query instead of being made anew.
@@ -104,9 +111,11 @@ impl World {
         if face_estimate(&scene) > 1 << 30 {
             return Err(WorldError::TooManyFaces);
         }
-        let solids = Solids::prepare(&scene, accelerate.then_some(&config.criteria))
+        let criteria = accelerate.then_some(&config.criteria);
+        let triangles = accelerate.then_some(&config.triangles);
+        let solids = Solids::prepare(&scene, criteria, triangles)
             .map_err(|(object, error)| WorldError::Mesh { object, error })?;
-        let sheets = Sheets::prepare(&scene, solids.face_count());
+        let sheets = Sheets::prepare(&scene, solids.face_count(), triangles)?;
         let bounds = scene.bounds();
         let center = if bounds.is_empty() {
             DVec3::ZERO
@@ -157,12 +166,15 @@ impl World {
             faces: self.solids.face_count() as usize + self.sheets.triangle_count(),
             triangles: self.sheets.triangle_count(),
             cells: self.solids.tree_stats().cloned(),
+            triangle_tree: self.sheets.triangles().tree_stats().copied(),
         }
     }
 
     /// The built structures as words: equal for equal scenes, whatever built them.
     pub fn words(&self) -> impl Iterator<Item = u32> + '_ {
-        self.solids.words()
+        self.solids
+            .words()
+            .chain(self.sheets.triangles().tree_words())
     }
 
     /// The nearest surface on each ray; `hits` is cleared and gets one hit per query.

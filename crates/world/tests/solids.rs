@@ -18,7 +18,15 @@ fn world(solids: impl IntoIterator<Item = Solid>, accel: Accel, criteria: Criter
         builder.add_object(Object::solid("part", solid, material));
     }
     let scene = Arc::new(builder.build().expect("valid"));
-    World::prepare(scene, &WorldConfig { accel, criteria }).expect("no meshes")
+    World::prepare(
+        scene,
+        &WorldConfig {
+            accel,
+            criteria,
+            ..WorldConfig::default()
+        },
+    )
+    .expect("no meshes")
 }
 
 fn crossings(world: &World, ray: Ray, whole: bool) -> Vec<Hit> {

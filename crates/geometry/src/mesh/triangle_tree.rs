@@ -70,10 +70,13 @@ impl TriangleTree {
         self.tree.as_ref().map(WideTree::stats)
     }
 
-    /// The octree as it lies in memory.
-    #[must_use]
-    pub fn tree_bytes(&self) -> Option<[&[u8]; 2]> {
-        self.tree.as_ref().map(WideTree::bytes)
+    /// The octree as words: equal for equal triangles, whatever built it.
+    pub fn tree_words(&self) -> impl Iterator<Item = u32> + '_ {
+        let bytes = self.tree.iter().flat_map(WideTree::bytes);
+        bytes.flat_map(|part| {
+            let (words, _) = part.as_chunks();
+            words.iter().map(|&word| u32::from_ne_bytes(word))
+        })
     }
 
     /// Shows `visit` the triangles that the line crosses in `span` (ends included), until nothing
