@@ -4,49 +4,10 @@
 
 mod meshes;
 
-use meshes::{Random, zoo};
+use meshes::{Random, nasty_ray, zoo};
 use octray_geometry::TriangleMesh;
 use octray_geometry::mesh::{MeshCrossing, TriangleRay};
 use octray_math::{DVec3, Ray};
-
-/// Lines that aim at the weak spots of `mesh`.
-fn nasty_ray(mesh: &TriangleMesh, random: &mut Random) -> Ray {
-    let bounds = mesh.bounds();
-    let size = bounds.half_size().max_element();
-    let vertex = |random: &mut Random| {
-        let triangle = random.below(mesh.triangles().len()) as u32;
-        (triangle, mesh.corners(triangle)[random.below(3)])
-    };
-    let (triangle, p) = vertex(random);
-    let [a, b, c] = mesh.corners(triangle);
-    let on_edge = a + (b - a) * [0.5, 0.25, random.between(0.0, 1.0)][random.below(3)];
-    let target = match random.below(4) {
-        0 => p,
-        1 => on_edge,
-        2 => (a + b + c) / 3.0,
-        _ => bounds.center() + random.point(size),
-    };
-    let axis = DVec3::AXES[random.below(3)] * size * [1.0, -1.0][random.below(2)];
-    let direction = match random.below(6) {
-        0 => axis,
-        1 => b - a,
-        2 => (b - a) + (c - a) * 0.5,
-        3 => vertex(random).1 - target,
-        4 => axis + DVec3::AXES[random.below(3)] * size,
-        _ => random.point(size),
-    };
-    let direction = if direction == DVec3::ZERO {
-        axis
-    } else {
-        direction
-    };
-    let origin = match random.below(3) {
-        0 => target,
-        1 => target - direction,
-        _ => target - direction * random.between(-4.0, 4.0),
-    };
-    Ray::new(origin, direction)
-}
 
 fn crossings(mesh: &TriangleMesh, ray: &Ray) -> Vec<MeshCrossing> {
     let mut out = Vec::new();

@@ -117,7 +117,11 @@ fn tight_bounds(world: &World) -> Aabb {
         let (u, v) = ((axis + 1) % 3, (axis + 2) % 3);
         let mut direction = DVec3::ZERO;
         direction[axis] = if up { -1.0 } else { 1.0 };
-        let start = if up { outer.max[axis] + 1.0 } else { outer.min[axis] - 1.0 };
+        let start = if up {
+            outer.max[axis] + 1.0
+        } else {
+            outer.min[axis] - 1.0
+        };
         let (mut low, mut high) = (outer.min, outer.max);
         let mut best = f64::INFINITY;
         for _ in 0..6 {
@@ -137,7 +141,10 @@ fn tight_bounds(world: &World) -> Aabb {
                 .collect();
             let mut hits = Vec::new();
             world.closest(&queries, &mut hits, &mut Counters::default());
-            let nearest = hits.iter().zip(&origins).min_by(|a, b| a.0.t.total_cmp(&b.0.t));
+            let nearest = hits
+                .iter()
+                .zip(&origins)
+                .min_by(|a, b| a.0.t.total_cmp(&b.0.t));
             let Some((hit, &at)) = nearest.filter(|(hit, _)| hit.t <= best) else {
                 break;
             };
@@ -176,23 +183,45 @@ fn volume(world: &World, bounds: Aabb, grid: usize) -> f64 {
 fn explore() {
     let mut reference = std::collections::BTreeMap::new();
     let folder = corpus("openscad/examples").unwrap();
-    for line in std::fs::read_to_string(folder.join("REFERENCE.tsv")).unwrap().lines().skip(1) {
+    for line in std::fs::read_to_string(folder.join("REFERENCE.tsv"))
+        .unwrap()
+        .lines()
+        .skip(1)
+    {
         let f: Vec<&str> = line.split('\t').collect();
-        let b: Vec<f64> = f[3].split_whitespace().map(|x| x.parse().unwrap()).collect();
+        let b: Vec<f64> = f[3]
+            .split_whitespace()
+            .map(|x| x.parse().unwrap())
+            .collect();
         reference.insert(f[0].to_owned(), (f[1].parse::<f64>().unwrap(), b));
     }
     for folder in ["openscad/examples", "openscad/dump"] {
         let Some(folder) = corpus(folder) else { return };
-        let mut paths: Vec<PathBuf> = std::fs::read_dir(folder).unwrap().map(|e| e.unwrap().path()).collect();
+        let mut paths: Vec<PathBuf> = std::fs::read_dir(folder)
+            .unwrap()
+            .map(|e| e.unwrap().path())
+            .collect();
         paths.sort();
         for path in paths {
             let name = path.file_name().unwrap().to_string_lossy().into_owned();
-            if !name.ends_with(".csg") || name.ends_with(".master.csg") { continue; }
-            let picture = path.with_file_name(format!("{}.render.png", name.split('.').next().unwrap()));
-            let picture = if picture.is_file() { picture } else { path.with_file_name(format!("{}.preview.png", name.split('.').next().unwrap())) };
-            if !picture.is_file() { continue; }
+            if !name.ends_with(".csg") || name.ends_with(".master.csg") {
+                continue;
+            }
+            let picture =
+                path.with_file_name(format!("{}.render.png", name.split('.').next().unwrap()));
+            let picture = if picture.is_file() {
+                picture
+            } else {
+                path.with_file_name(format!("{}.preview.png", name.split('.').next().unwrap()))
+            };
+            if !picture.is_file() {
+                continue;
+            }
             let Some(scene) = scene(&path) else { continue };
-            if scene.objects().is_empty() { println!("{name}: empty"); continue }
+            if scene.objects().is_empty() {
+                println!("{name}: empty");
+                continue;
+            }
             let t = std::time::Instant::now();
             let world = world(scene);
             let prep = t.elapsed();
@@ -201,12 +230,27 @@ fn explore() {
             let expected = Silhouette::of_picture(&picture);
             let ours = Silhouette::of_world(&world, bounds, expected.size);
             let (d, far) = ours.differences(&expected);
-            println!("{name}: area {} of {}, differ {d}, far {far} prep {prep:?} tight {tb:?} {:?}", ours.area(), expected.area(), t.elapsed());
+            println!(
+                "{name}: area {} of {}, differ {d}, far {far} prep {prep:?} tight {tb:?} {:?}",
+                ours.area(),
+                expected.area(),
+                t.elapsed()
+            );
             if let Some((v, b)) = reference.get(&name) {
-                let e = (0..3).map(|i| (bounds.min[i]-b[i]).abs().max((bounds.max[i]-b[i+3]).abs())).fold(0.0, f64::max);
+                let e = (0..3)
+                    .map(|i| {
+                        (bounds.min[i] - b[i])
+                            .abs()
+                            .max((bounds.max[i] - b[i + 3]).abs())
+                    })
+                    .fold(0.0, f64::max);
                 let t = std::time::Instant::now();
                 let m = volume(&world, bounds, 256);
-                println!("     bounds error {e}, volume {m} of {v}: {:.3e} {:?}", m / v - 1.0, t.elapsed());
+                println!(
+                    "     bounds error {e}, volume {m} of {v}: {:.3e} {:?}",
+                    m / v - 1.0,
+                    t.elapsed()
+                );
             }
         }
     }

@@ -14,4 +14,4 @@ mod world;
 pub use query::{Counters, Departure, Hit, RayQuery, Region, SurfaceHit};
 pub use world::{Accel, World, WorldConfig, WorldError, WorldStats};
 
-pub use octray_tree::{CellTreeStats, Criteria, WideTreeError, WideTreeStats};
+pub use octray_tree::{CellTreeStats, Criteria, WideTreeConfig, WideTreeError, WideTreeStats};

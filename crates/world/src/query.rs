@@ -3,6 +3,7 @@
 use octray_geometry::{FaceId, MaterialId};
 use octray_math::{DVec2, DVec3, Ray};
 use octray_scene::ObjectId;
+use octray_tree::WalkCost;
 
 /// Which solid a point of space belongs to: an object, or none.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -160,6 +161,13 @@ pub struct Counters {
     pub surface_tests: u64,
     /// Triangles intersected with a line.
     pub triangle_tests: u64,
+}
+
+impl Counters {
+    pub(crate) fn add_walk(&mut self, cost: &WalkCost) {
+        self.nodes += cost.nodes;
+        self.triangle_tests += cost.items;
+    }
 }
 
 impl std::ops::AddAssign for Counters {

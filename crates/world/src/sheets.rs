@@ -2,12 +2,11 @@
 
 use std::sync::Arc;
 
-use octray_geometry::mesh::{Placement, TrianglePoint, TriangleRay};
+use octray_geometry::mesh::{Placement, TrianglePoint, TriangleTree};
 use octray_geometry::{FaceId, MaterialId, Sheet, TriangleMesh};
-use octray_math::{Aabb, DVec3, Interval};
+use octray_math::Interval;
 use octray_scene::{ObjectId, Scene, Shape};
-use octray_tree::{WalkCost, WideTree, WideTreeConfig, WideTreeError, WideTreeStats};
-use rayon::prelude::*;
+use octray_tree::{WalkCost, WideTreeConfig, WideTreeError};
 
 use crate::Counters;
 use crate::line::Line;
@@ -25,10 +24,7 @@ struct Part {
 #[derive(Debug)]
 pub(crate) struct Sheets {
     parts: Vec<Part>,
-    positions: Vec<DVec3>,
-    triangles: Vec<[u32; 3]>,
-    /// `None` for brute force.
-    tree: Option<WideTree>,
+    triangles: TriangleTree,
     first_face: u32,
 }
 
@@ -41,23 +37,19 @@ pub(crate) struct SheetHit {
 }
 
 impl Sheets {
-    /// The mesh sheets of the scene; their triangles' faces are numbered from `first_face`. With
-    /// `config` in an octree, else for brute force.
+    /// The mesh sheets of the scene; their triangles' faces are numbered from `first_face`. With a
+    /// configuration they get an octree.
     ///
     /// # Errors
-    /// The tree would not fit the memory limit.
+    /// The octree would be too large.
     pub(crate) fn prepare(
         scene: &Scene,
         first_face: u32,
         config: Option<&WideTreeConfig>,
     ) -> Result<Self, WideTreeError> {
-        let mut sheets = Self {
-            parts: Vec::new(),
-            positions: Vec::new(),
-            triangles: Vec::new(),
-            tree: None,
-            first_face,
-        };
+        let mut parts = Vec::new();
+        let mut positions = Vec::new();
+        let mut triangles: Vec<[u32; 3]> = Vec::new();
         for (index, object) in scene.objects().iter().enumerate() {
             if let Shape::Sheet(Sheet::Mesh {
                 mesh,
@@ -65,52 +57,33 @@ impl Sheets {
             }) = &object.shape
             {
                 let placement = Placement::new(world_from_mesh);
-                sheets.add(ObjectId(index as u32), mesh, placement);
+                let first_vertex = positions.len() as u32;
+                positions.extend(placement.positions(mesh));
+                let first_triangle = triangles.len() as u32;
+                let wound = mesh.triangles().iter().map(|&t| placement.wound(t));
+                triangles.extend(wound.map(|t| t.map(|i| i + first_vertex)));
+                parts.push(Part {
+                    object: ObjectId(index as u32),
+                    mesh: Arc::clone(mesh),
+                    placement,
+                    first_triangle,
+                });
             }
         }
-        if let Some(config) = config {
-            let box_of = |t: u32| Aabb::from_points(sheets.corners(t));
-            let bounds: Vec<Aabb> = (0..sheets.triangles.len() as u32)
-                .into_par_iter()
-                .map(box_of)
-                .collect();
-            sheets.tree = Some(WideTree::build(&bounds, config)?);
-        }
-        Ok(sheets)
+        Ok(Self {
+            parts,
+            triangles: TriangleTree::new(positions, triangles, config)?,
+            first_face,
+        })
     }
 
-    fn add(&mut self, object: ObjectId, mesh: &Arc<TriangleMesh>, placement: Placement) {
-        let first_vertex = self.positions.len() as u32;
-        self.positions.extend(placement.positions(mesh));
-        let first_triangle = self.triangles.len() as u32;
-        let wound = mesh.triangles().iter().map(|&t| placement.wound(t));
-        self.triangles
-            .extend(wound.map(|t| t.map(|i| i + first_vertex)));
-        self.parts.push(Part {
-            object,
-            mesh: Arc::clone(mesh),
-            placement,
-            first_triangle,
-        });
+    /// The triangles with their octree.
+    pub(crate) const fn triangles(&self) -> &TriangleTree {
+        &self.triangles
     }
 
     pub(crate) fn triangle_count(&self) -> usize {
         self.triangles.len()
-    }
-
-    pub(crate) fn tree_stats(&self) -> Option<&WideTreeStats> {
-        self.tree.as_ref().map(WideTree::stats)
-    }
-
-    /// The bytes of the tree, for hashing.
-    pub(crate) fn bytes(&self) -> impl Iterator<Item = u8> + '_ {
-        self.tree
-            .iter()
-            .flat_map(|tree| tree.bytes().into_iter().flatten().copied())
-    }
-
-    fn corners(&self, triangle: u32) -> [DVec3; 3] {
-        self.triangles[triangle as usize].map(|i| self.positions[i as usize])
     }
 
     fn triangle(&self, face: FaceId) -> Option<u32> {
@@ -145,45 +118,21 @@ impl Sheets {
         if self.triangles.is_empty() {
             return;
         }
-        let ray = TriangleRay::new(&line.ray);
         let departed = self.triangle(line.departure.face);
-        let limit_before = limit.min(line.end);
-        let mut limit = limit_before;
-        let mut tests = 0;
-        let mut test = |triangle: u32| {
-            tests += 1;
-            if departed == Some(triangle) {
-                return limit;
-            }
-            if let Some(hit) = ray.intersect(self.corners(triangle))
-                && hit.t > line.origin
-                && hit.t <= limit
-            {
-                let face = FaceId(self.first_face + triangle);
-                limit = limit.min(visit(&SheetHit {
-                    s: hit.t,
-                    face,
-                    entering: hit.entering,
-                }));
-            }
-            limit
-        };
-        match &self.tree {
-            Some(tree) => {
-                let mut cost = WalkCost::default();
-                let span = Interval::new(line.origin, limit_before);
-                tree.closest(&line.ray, span, &mut cost, |triangle, end| {
-                    test(triangle).min(end)
-                });
-                counters.nodes += cost.nodes;
-            }
-            None => {
-                for triangle in 0..self.triangles.len() as u32 {
-                    test(triangle);
+        let span = Interval::new(line.origin, limit.min(line.end));
+        let mut cost = WalkCost::default();
+        self.triangles
+            .closest(&line.ray, span, &mut cost, |triangle, hit, end| {
+                if departed == Some(triangle) || hit.t <= line.origin {
+                    return end;
                 }
-            }
-        }
-        counters.triangle_tests += tests;
+                visit(&SheetHit {
+                    s: hit.t,
+                    face: FaceId(self.first_face + triangle),
+                    entering: hit.entering,
+                })
+            });
+        counters.add_walk(&cost);
     }
 
     /// Shading data of a triangle that the line crosses.

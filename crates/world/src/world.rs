@@ -31,6 +31,8 @@ pub struct WorldConfig {
     pub accel: Accel,
     /// When to divide cells.
     pub criteria: Criteria,
+    /// How to build the octrees over triangles.
+    pub triangles: WideTreeConfig,
 }
 
 /// Why a scene cannot be made ready for rays.
@@ -44,8 +46,8 @@ pub enum WorldError {
         /// What is wrong with the mesh.
         error: MeshError,
     },
-    /// The octree over the triangles does not fit.
-    #[error("octree over the triangles: {0}")]
+    /// The octree over the triangles of sheets would be too large.
+    #[error(transparent)]
     Triangles(#[from] WideTreeError),
     /// Faces and triangles together outnumber their ids.
     #[error("the scene has more than 2^30 faces and triangles")]
@@ -80,8 +82,8 @@ pub struct WorldStats {
     pub triangles: usize,
     /// The octree over the solids.
     pub cells: Option<CellTreeStats>,
-    /// The octree over the triangles.
-    pub wide: Option<WideTreeStats>,
+    /// The octree over the triangles of sheets.
+    pub triangle_tree: Option<WideTreeStats>,
 }
 
 /// Working memory is handed from query to query instead of being made anew.
@@ -109,13 +111,11 @@ impl World {
         if face_estimate(&scene) > 1 << 30 {
             return Err(WorldError::TooManyFaces);
         }
-        let solids = Solids::prepare(&scene, accelerate.then_some(&config.criteria))
+        let criteria = accelerate.then_some(&config.criteria);
+        let triangles = accelerate.then_some(&config.triangles);
+        let solids = Solids::prepare(&scene, criteria, triangles)
             .map_err(|(object, error)| WorldError::Mesh { object, error })?;
-        let wide = WideTreeConfig {
-            memory_limit: config.criteria.memory_limit,
-            ..WideTreeConfig::default()
-        };
-        let sheets = Sheets::prepare(&scene, solids.face_count(), accelerate.then_some(&wide))?;
+        let sheets = Sheets::prepare(&scene, solids.face_count(), triangles)?;
         let bounds = scene.bounds();
         let center = if bounds.is_empty() {
             DVec3::ZERO
@@ -166,16 +166,15 @@ impl World {
             faces: self.solids.face_count() as usize + self.sheets.triangle_count(),
             triangles: self.sheets.triangle_count(),
             cells: self.solids.tree_stats().cloned(),
-            wide: self.sheets.tree_stats().copied(),
+            triangle_tree: self.sheets.triangles().tree_stats().copied(),
         }
     }
 
-    /// The built structures as bytes: equal for equal scenes, whatever built them.
-    pub fn bytes(&self) -> impl Iterator<Item = u8> + '_ {
+    /// The built structures as words: equal for equal scenes, whatever built them.
+    pub fn words(&self) -> impl Iterator<Item = u32> + '_ {
         self.solids
             .words()
-            .flat_map(u32::to_le_bytes)
-            .chain(self.sheets.bytes())
+            .chain(self.sheets.triangles().tree_words())
     }
 
     /// The nearest surface on each ray; `hits` is cleared and gets one hit per query.

@@ -18,7 +18,15 @@ fn world(solids: impl IntoIterator<Item = Solid>, accel: Accel, criteria: Criter
         builder.add_object(Object::solid("part", solid, material));
     }
     let scene = Arc::new(builder.build().expect("valid"));
-    World::prepare(scene, &WorldConfig { accel, criteria }).expect("no meshes")
+    World::prepare(
+        scene,
+        &WorldConfig {
+            accel,
+            criteria,
+            ..WorldConfig::default()
+        },
+    )
+    .expect("no meshes")
 }
 
 fn crossings(world: &World, ray: Ray, whole: bool) -> Vec<Hit> {
@@ -236,7 +244,7 @@ proptest! {
         let with = |threads| {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("pool");
             let world = pool.install(|| world(solids.clone(), Accel::Auto, deep()));
-            world.bytes().collect::<Vec<u8>>()
+            world.words().collect::<Vec<u32>>()
         };
         prop_assert_eq!(with(1), with(4));
     }

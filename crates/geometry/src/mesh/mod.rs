@@ -6,8 +6,11 @@ mod intersect;
 mod placement;
 mod solid;
 mod triangle_mesh;
+mod triangle_tree;
+mod volume;
 
 pub use intersect::{MeshCrossing, TriangleHit, TriangleRay};
 pub use placement::{Placement, TrianglePoint};
 pub use solid::MeshSolid;
 pub use triangle_mesh::{CornerAttribute, MeshError, TriangleMesh};
+pub use triangle_tree::TriangleTree;

@@ -2,38 +2,50 @@
 
 use std::sync::Arc;
 
-use octray_math::{Aabb, DAffine3, DVec3, Ray};
+use octray_math::{Aabb, DAffine3, DVec3, Interval, Ray};
+use octray_tree::{WalkCost, WideTreeConfig};
 
-use super::{MeshCrossing, MeshError, Placement, TriangleMesh, TrianglePoint, TriangleRay};
+use super::{MeshCrossing, MeshError, Placement, TriangleMesh, TrianglePoint, TriangleTree};
 use crate::MaterialId;
 use crate::surface::Side;
 
 /// A closed mesh in world coordinates.
+///
+/// A point is inside where its winding number is not zero. For an ordinary mesh that is what one
+/// expects; shells that overlap are united, and a shell that faces inwards within another is a
+/// cavity.
 #[derive(Clone, Debug)]
 pub struct MeshSolid {
     mesh: Arc<TriangleMesh>,
     placement: Placement,
-    positions: Vec<DVec3>,
-    triangles: Vec<[u32; 3]>,
+    triangles: TriangleTree,
 }
 
 impl MeshSolid {
-    /// Places a mesh.
+    /// Places a mesh, with an octree over its triangles if there is a configuration. A mesh that
+    /// is inside out as a whole is turned.
     ///
     /// # Errors
-    /// The mesh is not closed.
-    pub fn new(mesh: &Arc<TriangleMesh>, world_from_mesh: &DAffine3) -> Result<Self, MeshError> {
+    /// The mesh is not closed, or the octree would be too large.
+    pub fn new(
+        mesh: &Arc<TriangleMesh>,
+        world_from_mesh: &DAffine3,
+        config: Option<&WideTreeConfig>,
+    ) -> Result<Self, MeshError> {
         mesh.check_closed()?;
+        let mesh = if mesh.is_inside_out() {
+            Arc::new(mesh.reversed())
+        } else {
+            Arc::clone(mesh)
+        };
         let placement = Placement::new(world_from_mesh);
+        let positions = placement.positions(&mesh).collect();
+        let wound = mesh.triangles().iter().map(|&t| placement.wound(t));
+        let triangles = TriangleTree::new(positions, wound.collect(), config)?;
         Ok(Self {
-            positions: placement.positions(mesh).collect(),
-            triangles: mesh
-                .triangles()
-                .iter()
-                .map(|&t| placement.wound(t))
-                .collect(),
-            mesh: Arc::clone(mesh),
+            mesh,
             placement,
+            triangles,
         })
     }
 
@@ -43,42 +55,80 @@ impl MeshSolid {
         self.triangles.len() as u32
     }
 
+    /// The triangles in world coordinates.
+    #[must_use]
+    pub const fn triangles(&self) -> &TriangleTree {
+        &self.triangles
+    }
+
     /// The material of one triangle, where the mesh has materials.
     #[must_use]
     pub fn material(&self, triangle: u32) -> Option<MaterialId> {
         self.mesh.materials().map(|all| all[triangle as usize])
     }
 
-    /// Appends the crossings of the whole line, sorted. Returns how many triangles were tested.
-    pub fn crossings(&self, ray: &Ray, out: &mut Vec<MeshCrossing>) -> u64 {
-        let line = TriangleRay::new(ray);
+    /// Appends the changes between outside and inside along the whole line: sorted, entering and
+    /// leaving in turn, as many of one as of the other.
+    ///
+    /// Of the triangles that the line crosses at one `t` only the change counts that they make
+    /// together; the lowest of those that face accordingly stands for them.
+    pub fn crossings(&self, ray: &Ray, out: &mut Vec<MeshCrossing>, cost: &mut WalkCost) {
         let start = out.len();
-        for (triangle, corners) in self.triangles.iter().enumerate() {
-            if let Some(hit) = line.intersect(corners.map(|i| self.positions[i as usize])) {
+        self.triangles
+            .all(ray, Interval::ALL, cost, |triangle, hit| {
                 out.push(MeshCrossing {
                     t: hit.t,
-                    triangle: triangle as u32,
+                    triangle,
                     entering: hit.entering,
                 });
+            });
+        out[start..].sort_unstable_by(|a, b| a.t.total_cmp(&b.t).then(a.triangle.cmp(&b.triangle)));
+        let (mut read, mut kept, mut winding) = (start, start, 0i64);
+        while read < out.len() {
+            let first = out[read];
+            let group = out[read..]
+                .iter()
+                .take_while(|c| c.t == first.t)
+                .count()
+                .max(1);
+            let members = &out[read..read + group];
+            let entries = members.iter().filter(|c| c.entering).count() as i64;
+            let change = 2 * entries - group as i64;
+            let was_inside = winding != 0;
+            winding += change;
+            let is_inside = winding != 0;
+            read += group;
+            if was_inside != is_inside {
+                let facing = members.iter().find(|c| c.entering == (change > 0));
+                out[kept] = MeshCrossing {
+                    entering: is_inside,
+                    ..*facing.unwrap_or(&first)
+                };
+                kept += 1;
             }
         }
-        out[start..].sort_by(|a, b| a.t.total_cmp(&b.t).then(a.triangle.cmp(&b.triangle)));
-        self.triangles.len() as u64
+        out.truncate(kept);
+    }
+
+    /// Whether a point is inside. On the boundary itself, either.
+    #[must_use]
+    pub fn contains(&self, point: DVec3) -> bool {
+        let mut winding = 0i64;
+        let behind = Interval::new(f64::NEG_INFINITY, 0.0);
+        let mut cost = WalkCost::default();
+        self.triangles
+            .all(&Ray::new(point, DVec3::X), behind, &mut cost, |_, hit| {
+                winding += if hit.entering { 1 } else { -1 };
+            });
+        winding != 0
     }
 
     /// On which side of the boundary a box lies; the inside is negative.
     #[must_use]
     pub fn classify(&self, bounds: &Aabb) -> Side {
-        let near = |t: &[u32; 3]| {
-            Aabb::from_points(t.map(|i| self.positions[i as usize])).overlaps(bounds)
-        };
-        if self.triangles.iter().any(near) {
-            return Side::Both;
-        }
-        let mut crossings = Vec::new();
-        self.crossings(&Ray::new(bounds.center(), DVec3::X), &mut crossings);
-        let behind = crossings.iter().filter(|c| c.t < 0.0).count();
-        if behind % 2 == 1 {
+        if self.triangles.overlaps(bounds) {
+            Side::Both
+        } else if self.contains(bounds.center()) {
             Side::Negative
         } else {
             Side::Positive

@@ -55,6 +55,9 @@ pub enum MeshError {
         /// End of the first.
         to: DVec3,
     },
+    /// The octree over its triangles would be too large.
+    #[error(transparent)]
+    Tree(#[from] octray_tree::WideTreeError),
 }
 
 /// Per-corner data with its own indices, so that a position may carry several normals or texture
@@ -70,11 +73,11 @@ pub struct CornerAttribute<T> {
 /// Triangles over shared positions. Counter-clockwise seen from outside.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TriangleMesh {
-    positions: Vec<DVec3>,
-    triangles: Vec<[u32; 3]>,
-    normals: Option<CornerAttribute<DVec3>>,
-    texcoords: Option<CornerAttribute<DVec2>>,
-    materials: Option<Vec<MaterialId>>,
+    pub(super) positions: Vec<DVec3>,
+    pub(super) triangles: Vec<[u32; 3]>,
+    pub(super) normals: Option<CornerAttribute<DVec3>>,
+    pub(super) texcoords: Option<CornerAttribute<DVec2>>,
+    pub(super) materials: Option<Vec<MaterialId>>,
 }
 
 const LIMIT: usize = 1 << 30;

@@ -90,18 +90,25 @@ impl Reader<'_> {
             "orthographic" => made.projection = Projection::Orthographic,
             "fisheye" | "ultra_wide_angle" | "omnimax" | "panoramic" | "spherical"
             | "mesh_camera" => {
-                let message = format!("the camera `{word}` is not supported: a perspective one is taken");
+                let message =
+                    format!("the camera `{word}` is not supported: a perspective one is taken");
                 self.warn(token.span, message);
                 made.substitute = true;
             }
             "cylinder" => {
                 made.substitute = true;
                 self.float()?;
-                self.warn(token.span, "the cylindrical camera is not supported: a perspective one is taken");
+                self.warn(
+                    token.span,
+                    "the cylindrical camera is not supported: a perspective one is taken",
+                );
             }
             "aperture" => {
                 if self.float()? != 0.0 {
-                    self.warn(token.span, "focal blur is not supported: everything is sharp");
+                    self.warn(
+                        token.span,
+                        "focal blur is not supported: everything is sharp",
+                    );
                 }
             }
             "focal_point" | "blur_samples" | "confidence" | "variance" => {
@@ -152,11 +159,20 @@ impl CameraState {
                 .try_normalize()
                 .ok_or("the camera looks along its `sky`")?;
             up = view.cross(side) * up.length();
-            right = side * if left_handed { right.length() } else { -right.length() };
+            right = side
+                * if left_handed {
+                    right.length()
+                } else {
+                    -right.length()
+                };
             direction = view * direction.length();
         }
         if let Some(angle) = self.angle {
-            let angle = if self.substitute { angle.min(120.0) } else { angle };
+            let angle = if self.substitute {
+                angle.min(120.0)
+            } else {
+                angle
+            };
             if !(angle > 0.0 && angle < 180.0) {
                 return Err("the camera's angle must lie between 0 and 180 degrees");
             }
@@ -199,8 +215,27 @@ impl CameraState {
 }
 
 const CAMERA_WORDS: [&str; 23] = [
-    "location", "direction", "right", "up", "sky", "look_at", "angle", "perspective",
-    "orthographic", "fisheye", "ultra_wide_angle", "omnimax", "panoramic", "spherical",
-    "mesh_camera", "cylinder", "aperture", "focal_point", "blur_samples", "confidence",
-    "variance", "bokeh", "normal",
+    "location",
+    "direction",
+    "right",
+    "up",
+    "sky",
+    "look_at",
+    "angle",
+    "perspective",
+    "orthographic",
+    "fisheye",
+    "ultra_wide_angle",
+    "omnimax",
+    "panoramic",
+    "spherical",
+    "mesh_camera",
+    "cylinder",
+    "aperture",
+    "focal_point",
+    "blur_samples",
+    "confidence",
+    "variance",
+    "bokeh",
+    "normal",
 ];

@@ -55,13 +55,7 @@ impl Reader<'_> {
         })
     }
 
-    fn set_element(
-        &mut self,
-        name: &str,
-        indices: &[f64],
-        value: Value,
-        span: Span,
-    ) -> Parsed<()> {
+    fn set_element(&mut self, name: &str, indices: &[f64], value: Value, span: Span) -> Parsed<()> {
         let depth = match &value {
             Value::Array(inner) => inner.depth,
             _ => 0,
@@ -301,7 +295,10 @@ fn element_index(array: &Array, indices: &[f64]) -> Result<usize, String> {
     for (&index, &size) in indices.iter().zip(&array.sizes) {
         let rounded = index + 1e-8;
         if !(rounded >= 0.0 && rounded < size as f64) {
-            return Err(format!(" has elements 0 to {}, not {index}", size.saturating_sub(1)));
+            return Err(format!(
+                " has elements 0 to {}, not {index}",
+                size.saturating_sub(1)
+            ));
         }
         place = place * size + rounded as usize;
     }

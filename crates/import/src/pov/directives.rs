@@ -34,9 +34,10 @@ impl Reader<'_> {
     pub(super) fn ends_value(&self, name: &str) -> bool {
         match name {
             "if" | "ifdef" | "ifndef" | "else" | "elseif" | "switch" | "case" | "range" => false,
-            "end" => self.flow.last().is_some_and(|flow| {
-                matches!(flow.kind, FlowKind::While(_) | FlowKind::For { .. })
-            }),
+            "end" => self
+                .flow
+                .last()
+                .is_some_and(|flow| matches!(flow.kind, FlowKind::While(_) | FlowKind::For { .. })),
             _ => true,
         }
     }

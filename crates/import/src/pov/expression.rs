@@ -101,10 +101,7 @@ impl Reader<'_> {
         let token = self.peek();
         let follows = match &token.kind {
             Kind::Number(_) => true,
-            Kind::Word(word) => matches!(
-                &**word,
-                "on" | "off" | "yes" | "no" | "true" | "false"
-            ),
+            Kind::Word(word) => matches!(&**word, "on" | "off" | "yes" | "no" | "true" | "false"),
             _ => false,
         };
         Ok(!follows || self.float()? != 0.0)
@@ -284,7 +281,10 @@ impl Reader<'_> {
             other => {
                 let what = other.describe();
                 let found = token.describe();
-                self.fail(token.span, format!("expected a value, but {found} is {what}"))
+                self.fail(
+                    token.span,
+                    format!("expected a value, but {found} is {what}"),
+                )
             }
         }
     }
@@ -332,17 +332,52 @@ fn is_constant(word: &str) -> bool {
 }
 
 const CONSTANTS: [&str; 25] = [
-    "x", "y", "z", "u", "v", "t", "pi", "tau", "yes", "on", "true", "no", "off", "false", "clock",
-    "clock_on", "clock_delta", "initial_frame", "final_frame", "frame_number", "initial_clock",
-    "final_clock", "version", "image_width", "image_height",
+    "x",
+    "y",
+    "z",
+    "u",
+    "v",
+    "t",
+    "pi",
+    "tau",
+    "yes",
+    "on",
+    "true",
+    "no",
+    "off",
+    "false",
+    "clock",
+    "clock_on",
+    "clock_delta",
+    "initial_frame",
+    "final_frame",
+    "frame_number",
+    "initial_clock",
+    "final_clock",
+    "version",
+    "image_width",
+    "image_height",
 ];
 
 /// Words that begin a colour.
 pub(super) fn is_color_word(word: &str) -> bool {
     matches!(
         word,
-        "color" | "colour" | "rgb" | "rgbf" | "rgbt" | "rgbft" | "srgb" | "srgbf" | "srgbt"
-            | "srgbft" | "red" | "green" | "blue" | "filter" | "transmit"
+        "color"
+            | "colour"
+            | "rgb"
+            | "rgbf"
+            | "rgbt"
+            | "rgbft"
+            | "srgb"
+            | "srgbf"
+            | "srgbt"
+            | "srgbft"
+            | "red"
+            | "green"
+            | "blue"
+            | "filter"
+            | "transmit"
     )
 }
 
@@ -362,7 +397,9 @@ impl Reader<'_> {
         }
         let word = self.peek_word();
         let mut color = match word.as_deref() {
-            Some(key @ ("rgb" | "rgbf" | "rgbt" | "rgbft" | "srgb" | "srgbf" | "srgbt" | "srgbft")) => {
+            Some(
+                key @ ("rgb" | "rgbf" | "rgbt" | "rgbft" | "srgb" | "srgbf" | "srgbt" | "srgbft"),
+            ) => {
                 self.next();
                 let terms = self.terms()?;
                 arranged(key, terms)

@@ -61,9 +61,7 @@ const OTHER: [&str; 19] = [
 ];
 
 /// Functions that give strings.
-const TEXTUAL: [&str; 7] = [
-    "chr", "concat", "str", "strlwr", "strupr", "substr", "vstr",
-];
+const TEXTUAL: [&str; 7] = ["chr", "concat", "str", "strlwr", "strupr", "substr", "vstr"];
 
 pub(super) fn is_text_function(word: &str) -> bool {
     TEXTUAL.contains(&word)

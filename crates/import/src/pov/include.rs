@@ -53,7 +53,9 @@ impl Reader<'_> {
         let nested = self.diagnostics.path(span.source).starts_with(STANDARD);
         if !known.complete && !nested {
             let message = if known.text.is_empty() {
-                format!("octray has no definitions for the standard include `{name}`: what uses them is left out")
+                format!(
+                    "octray has no definitions for the standard include `{name}`: what uses them is left out"
+                )
             } else {
                 format!("octray knows the standard include `{name}` only in part")
             };

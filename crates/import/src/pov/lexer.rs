@@ -161,7 +161,9 @@ pub(super) fn tokens(diagnostics: &Diagnostics, source: SourceId) -> Rc<[Token]>
     let text = match std::str::from_utf8(bytes) {
         Ok(text) => text,
         Err(_) => {
-            let plain = bytes.iter().map(|&b| if b < 0x80 { b as char } else { '?' });
+            let plain = bytes
+                .iter()
+                .map(|&b| if b < 0x80 { b as char } else { '?' });
             ascii = plain.collect::<String>();
             &ascii
         }

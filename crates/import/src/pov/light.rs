@@ -85,7 +85,10 @@ impl Reader<'_> {
             "spotlight" => light.spot = true,
             "cylinder" => {
                 light.spot = true;
-                self.warn(token.span, "cylindrical lights are not supported: a spotlight is taken");
+                self.warn(
+                    token.span,
+                    "cylindrical lights are not supported: a spotlight is taken",
+                );
             }
             "parallel" => light.parallel = true,
             "point_at" => light.point_at = self.vector()?,
@@ -104,7 +107,10 @@ impl Reader<'_> {
                     self.float()?;
                     self.comma();
                 }
-                self.warn(token.span, "area lights are not supported: a point light in its middle is taken");
+                self.warn(
+                    token.span,
+                    "area lights are not supported: a point light in its middle is taken",
+                );
             }
             "adaptive" => {
                 self.float()?;
@@ -115,7 +121,10 @@ impl Reader<'_> {
             }
             "groups" => {
                 self.text()?;
-                self.warn(token.span, "light groups are not supported: it shines on everything");
+                self.warn(
+                    token.span,
+                    "light groups are not supported: it shines on everything",
+                );
             }
             _ => {
                 self.warn(token.span, format!("`{word}` of a light is not supported"));
@@ -166,8 +175,24 @@ impl LightDef {
 }
 
 const LIGHT_WORDS: [&str; 20] = [
-    "spotlight", "cylinder", "parallel", "point_at", "radius", "falloff", "tightness",
-    "shadowless", "fade_distance", "fade_power", "area_light", "adaptive", "jitter", "circular",
-    "orient", "area_illumination", "media_attenuation", "media_interaction", "groups",
+    "spotlight",
+    "cylinder",
+    "parallel",
+    "point_at",
+    "radius",
+    "falloff",
+    "tightness",
+    "shadowless",
+    "fade_distance",
+    "fade_power",
+    "area_light",
+    "adaptive",
+    "jitter",
+    "circular",
+    "orient",
+    "area_illumination",
+    "media_attenuation",
+    "media_interaction",
+    "groups",
     "projected_through",
 ];

@@ -342,7 +342,10 @@ impl<'a> Lowering<'a> {
                 let made = Solid::mesh(std::sync::Arc::clone(&def.mesh))
                     .and_then(|solid| solid.transform(*frame));
                 if made.is_err() {
-                    self.warn(object.span, "this mesh is not closed: as operand it is left out");
+                    self.warn(
+                        object.span,
+                        "this mesh is not closed: as operand it is left out",
+                    );
                 }
                 made.ok()
             }

@@ -163,11 +163,7 @@ impl Reader<'_> {
     }
 
     /// The tokens to the closing brace, numbers put in for names as they are now.
-    fn function_body(
-        &mut self,
-        open: Span,
-        parameters: &[Rc<str>],
-    ) -> Parsed<Option<Rc<[Token]>>> {
+    fn function_body(&mut self, open: Span, parameters: &[Rc<str>]) -> Parsed<Option<Rc<[Token]>>> {
         let mut body: Vec<Token> = Vec::new();
         let mut depth = 1;
         let mut pattern = false;

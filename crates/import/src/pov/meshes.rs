@@ -145,7 +145,10 @@ impl Reader<'_> {
                 textures: all.textures,
                 has_inside: all.has_inside,
             }))),
-            Err(error) => self.fail(span.to(self.last), format!("this mesh is not usable: {error}")),
+            Err(error) => self.fail(
+                span.to(self.last),
+                format!("this mesh is not usable: {error}"),
+            ),
         }
     }
 
@@ -195,11 +198,7 @@ impl Reader<'_> {
     }
 
     /// `{ count, item, ... }` behind a word.
-    fn counted(
-        &mut self,
-        what: &str,
-        mut item: impl FnMut(&mut Self) -> Parsed<()>,
-    ) -> Parsed<()> {
+    fn counted(&mut self, what: &str, mut item: impl FnMut(&mut Self) -> Parsed<()>) -> Parsed<()> {
         let head = self.next();
         let mut count: Option<f64> = None;
         let mut read = 0.0;

@@ -40,7 +40,10 @@ pub(super) enum Operation {
 pub(super) enum Geometry {
     Solid(Solid),
     /// A surface that closes to a solid when it is an operand: an `open` cylinder.
-    Open { shell: Sheet, solid: Solid },
+    Open {
+        shell: Sheet,
+        solid: Solid,
+    },
     Sheet(Sheet),
     /// Several surfaces without an inside.
     Sheets(Vec<Geometry>),
@@ -105,7 +108,10 @@ impl Reader<'_> {
             return self.fail(token.span, "expected an object");
         };
         if UNSUPPORTED.contains(&&*word) {
-            self.warn(token.span, format!("`{word}` is not supported: it is left out"));
+            self.warn(
+                token.span,
+                format!("`{word}` is not supported: it is left out"),
+            );
             self.skip_block()?;
             return Ok(None);
         }
@@ -146,7 +152,10 @@ impl Reader<'_> {
             Geometry::Operation(_, children) => children,
             _ => &[],
         };
-        let parts = children.iter().chain(&object.clips).chain(&object.companions);
+        let parts = children
+            .iter()
+            .chain(&object.clips)
+            .chain(&object.companions);
         let (mut depth, mut count) = (0, 1_u64);
         for part in parts {
             depth = depth.max(part.depth);
@@ -168,7 +177,9 @@ impl Reader<'_> {
     /// What distinguishes the object, up to its modifiers.
     fn head(&mut self, word: &str, span: Span) -> Parsed<Option<ObjectDef>> {
         match word {
-            "object" => Ok(self.object_head()?.map(|object| ObjectDef { span, ..object })),
+            "object" => Ok(self
+                .object_head()?
+                .map(|object| ObjectDef { span, ..object })),
             "light_source" => self.light_head(),
             _ => {
                 let token = self.peek();
@@ -197,7 +208,10 @@ impl Reader<'_> {
             other => {
                 let found = token.describe();
                 let what = other.describe();
-                self.fail(token.span, format!("expected an object, but {found} is {what}"))
+                self.fail(
+                    token.span,
+                    format!("expected an object, but {found} is {what}"),
+                )
             }
         }
     }
@@ -319,15 +333,56 @@ impl Reader<'_> {
 
 /// Words that begin an object.
 pub(super) const OBJECTS: [&str; 35] = [
-    "object", "union", "merge", "intersection", "difference", "sphere", "box", "cylinder", "cone",
-    "plane", "torus", "disc", "polygon", "triangle", "smooth_triangle", "mesh", "mesh2", "prism",
-    "lathe", "quadric", "light_source", "light_group", "bicubic_patch", "blob", "cubic",
-    "height_field", "isosurface", "julia_fractal", "parametric", "poly", "quartic", "sor",
-    "sphere_sweep", "superellipsoid", "text",
+    "object",
+    "union",
+    "merge",
+    "intersection",
+    "difference",
+    "sphere",
+    "box",
+    "cylinder",
+    "cone",
+    "plane",
+    "torus",
+    "disc",
+    "polygon",
+    "triangle",
+    "smooth_triangle",
+    "mesh",
+    "mesh2",
+    "prism",
+    "lathe",
+    "quadric",
+    "light_source",
+    "light_group",
+    "bicubic_patch",
+    "blob",
+    "cubic",
+    "height_field",
+    "isosurface",
+    "julia_fractal",
+    "parametric",
+    "poly",
+    "quartic",
+    "sor",
+    "sphere_sweep",
+    "superellipsoid",
+    "text",
 ];
 
 /// Objects that are read over.
 const UNSUPPORTED: [&str; 13] = [
-    "bicubic_patch", "blob", "cubic", "height_field", "isosurface", "julia_fractal", "parametric",
-    "poly", "quartic", "sor", "text", "sphere_sweep", "superellipsoid",
+    "bicubic_patch",
+    "blob",
+    "cubic",
+    "height_field",
+    "isosurface",
+    "julia_fractal",
+    "parametric",
+    "poly",
+    "quartic",
+    "sor",
+    "text",
+    "sphere_sweep",
+    "superellipsoid",
 ];

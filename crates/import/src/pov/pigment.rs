@@ -90,7 +90,11 @@ impl Reader<'_> {
             | "function" | "slope" | "aoi" | "tiling" => {
                 self.unsupported_pattern(&word);
                 state.chosen = Some(Chosen::Flat);
-                if self.at("{") { self.skip_block() } else { Ok(()) }
+                if self.at("{") {
+                    self.skip_block()
+                } else {
+                    Ok(())
+                }
             }
             "warp" => {
                 self.warn(token.span, "`warp` is not supported");
@@ -109,7 +113,10 @@ impl Reader<'_> {
             }
             other if MODIFIERS.contains(&other) => {
                 if !matches!(state.chosen, Some(Chosen::Flat) | None) {
-                    self.warn(token.span, format!("`{other}` of a pigment is not supported"));
+                    self.warn(
+                        token.span,
+                        format!("`{other}` of a pigment is not supported"),
+                    );
                 }
                 self.next();
                 self.skip_argument()
@@ -185,7 +192,10 @@ impl Reader<'_> {
             Kind::Number(_) | Kind::Sign("<" | "-" | "(" | "+") => true,
             Kind::Word(word) => {
                 matches!(self.scopes.get(word), Some(Value::Terms(_)))
-                    || matches!(&**word, "x" | "y" | "z" | "on" | "off" | "yes" | "no" | "pi")
+                    || matches!(
+                        &**word,
+                        "x" | "y" | "z" | "on" | "off" | "yes" | "no" | "pi"
+                    )
             }
             Kind::Text(_) => {
                 self.next();
@@ -264,16 +274,71 @@ impl State {
 
 /// Patterns that are read and not rendered.
 const PATTERNS: [&str; 34] = [
-    "agate", "boxed", "bozo", "bumps", "cells", "crackle", "cylindrical", "dents", "facets",
-    "granite", "julia", "leopard", "magnet", "mandel", "marble", "onion", "planar", "quilted",
-    "radial", "ripples", "spherical", "spiral1", "spiral2", "spotted", "waves", "wood",
-    "wrinkles", "proximity", "gif", "png", "jpeg", "tga", "ppm", "pavement",
+    "agate",
+    "boxed",
+    "bozo",
+    "bumps",
+    "cells",
+    "crackle",
+    "cylindrical",
+    "dents",
+    "facets",
+    "granite",
+    "julia",
+    "leopard",
+    "magnet",
+    "mandel",
+    "marble",
+    "onion",
+    "planar",
+    "quilted",
+    "radial",
+    "ripples",
+    "spherical",
+    "spiral1",
+    "spiral2",
+    "spotted",
+    "waves",
+    "wood",
+    "wrinkles",
+    "proximity",
+    "gif",
+    "png",
+    "jpeg",
+    "tga",
+    "ppm",
+    "pavement",
 ];
 
 /// Words of patterns with at most one value behind them.
 pub(super) const MODIFIERS: [&str; 29] = [
-    "turbulence", "octaves", "omega", "lambda", "frequency", "phase", "ramp_wave", "sine_wave",
-    "triangle_wave", "scallop_wave", "cubic_wave", "poly_wave", "noise_generator", "control0",
-    "control1", "agate_turb", "brick_size", "mortar", "form", "metric", "offset", "solid",
-    "exponent", "map_type", "interpolate", "once", "use_index", "use_color", "accuracy",
+    "turbulence",
+    "octaves",
+    "omega",
+    "lambda",
+    "frequency",
+    "phase",
+    "ramp_wave",
+    "sine_wave",
+    "triangle_wave",
+    "scallop_wave",
+    "cubic_wave",
+    "poly_wave",
+    "noise_generator",
+    "control0",
+    "control1",
+    "agate_turb",
+    "brick_size",
+    "mortar",
+    "form",
+    "metric",
+    "offset",
+    "solid",
+    "exponent",
+    "map_type",
+    "interpolate",
+    "once",
+    "use_index",
+    "use_color",
+    "accuracy",
 ];

@@ -119,7 +119,10 @@ impl Reader<'_> {
         match made {
             Some(made) => Ok(self.usable("quadric", span, made.map(Geometry::Solid))),
             None => {
-                self.warn(span, "a quadric of this kind is not supported: it is left out");
+                self.warn(
+                    span,
+                    "a quadric of this kind is not supported: it is left out",
+                );
                 Ok(None)
             }
         }

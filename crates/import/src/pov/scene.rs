@@ -52,7 +52,10 @@ impl Reader<'_> {
             }
             let found = token.describe();
             self.next();
-            return self.fail(token.span, format!("expected an object or a statement, found {found}"));
+            return self.fail(
+                token.span,
+                format!("expected an object or a statement, found {found}"),
+            );
         };
         if OBJECTS.contains(&&*word) {
             if let Some(object) = self.object()? {
@@ -189,10 +192,7 @@ impl Reader<'_> {
                     r.next();
                 }
                 _ => {
-                    return r.fail(
-                        token.span,
-                        format!("`{word}` is not a global setting"),
-                    );
+                    return r.fail(token.span, format!("`{word}` is not a global setting"));
                 }
             }
             Ok(())

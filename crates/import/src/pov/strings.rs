@@ -27,7 +27,10 @@ impl Reader<'_> {
                 other => {
                     let what = other.describe();
                     let found = token.describe();
-                    self.fail(token.span, format!("expected a string, but {found} is {what}"))
+                    self.fail(
+                        token.span,
+                        format!("expected a string, but {found} is {what}"),
+                    )
                 }
             },
             _ => {
@@ -108,7 +111,11 @@ impl Reader<'_> {
 
 /// As C's `printf("%*.*f")`; a negative width pads with zeros, negative digits mean 6.
 fn formatted(value: f64, width: f64, digits: f64) -> String {
-    let digits = if digits < 0.0 { 6 } else { digits.min(40.0) as usize };
+    let digits = if digits < 0.0 {
+        6
+    } else {
+        digits.min(40.0) as usize
+    };
     let mut out = String::new();
     let places = width.abs().min(200.0) as usize;
     let _ = if width < 0.0 {

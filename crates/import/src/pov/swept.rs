@@ -66,7 +66,10 @@ impl Reader<'_> {
             return Ok(None);
         };
         let inverse = plane.inverse();
-        let flat: Vec<DVec3> = corners.iter().map(|c| inverse.transform_point3(*c)).collect();
+        let flat: Vec<DVec3> = corners
+            .iter()
+            .map(|c| inverse.transform_point3(*c))
+            .collect();
         let size = flat.iter().fold(0.0, |size: f64, p| size.max(p.length()));
         if flat.iter().any(|p| p.z.abs() > 1e-6 * size) {
             return self.fail(span, "the points of this polygon do not lie in one plane");
@@ -168,9 +171,12 @@ impl Reader<'_> {
         // The numbers up to the modifiers.
         loop {
             let token = self.peek();
-            let modifier = token
-                .word()
-                .is_some_and(|w| !matches!(&**w, "linear_sweep" | "conic_sweep" | "x" | "y" | "z" | "u" | "v"));
+            let modifier = token.word().is_some_and(|w| {
+                !matches!(
+                    &**w,
+                    "linear_sweep" | "conic_sweep" | "x" | "y" | "z" | "u" | "v"
+                )
+            });
             if token.is("}") || modifier || token.kind == super::lexer::Kind::End {
                 return Ok(None);
             }
@@ -268,7 +274,10 @@ fn lathe_piece(piece: &Trapezoid) -> Result<Solid, ShapeError> {
     if piece.left[0] <= 0.0 && piece.left[1] <= 0.0 {
         return Ok(outer);
     }
-    Ok(Solid::difference([outer, frustum(piece.left.map(|x| x.max(0.0)))?]))
+    Ok(Solid::difference([
+        outer,
+        frustum(piece.left.map(|x| x.max(0.0)))?,
+    ]))
 }
 
 /// A profile that is not closed: the surface alone.
@@ -281,7 +290,12 @@ fn open_lathe(points: &[DVec2]) -> Result<Geometry, ShapeError> {
         }
         let part = if a.y == b.y {
             let (inner, outer) = (a.x.abs().min(b.x.abs()), a.x.abs().max(b.x.abs()));
-            Geometry::Sheet(Sheet::disc(DVec3::new(0.0, a.y, 0.0), DVec3::Y, outer, inner)?)
+            Geometry::Sheet(Sheet::disc(
+                DVec3::new(0.0, a.y, 0.0),
+                DVec3::Y,
+                outer,
+                inner,
+            )?)
         } else {
             let [p, q] = [a.y, b.y].map(|y| DVec3::new(0.0, y, 0.0));
             conical(p, a.x.abs(), q, b.x.abs(), true)?

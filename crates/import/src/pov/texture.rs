@@ -150,7 +150,10 @@ impl Reader<'_> {
             Some("pigment") => layer.pigment = self.pigment(Some(&layer.pigment))?,
             Some("finish") => layer.finish = self.finish(layer.finish)?,
             _ => {
-                self.warn(token.span, "`normal` is not supported: the surface stays smooth");
+                self.warn(
+                    token.span,
+                    "`normal` is not supported: the surface stays smooth",
+                );
                 self.skip_block()?;
             }
         }

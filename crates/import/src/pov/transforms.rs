@@ -98,9 +98,9 @@ impl Reader<'_> {
             } else if let Some(map) = r.transform_item()? {
                 all = map * all;
             } else {
-                let known = r.peek_word().is_some_and(|word| {
-                    matches!(r.scopes.get(&word), Some(Value::Transform(_)))
-                });
+                let known = r
+                    .peek_word()
+                    .is_some_and(|word| matches!(r.scopes.get(&word), Some(Value::Transform(_))));
                 if !known && !r.partial_includes {
                     return r.unexpected("a transform");
                 }

@@ -15,6 +15,7 @@
 mod binary;
 mod collapse;
 mod frame;
+mod region;
 #[cfg(test)]
 mod tests;
 mod walk;

@@ -263,6 +263,38 @@ fn the_first_box_is_the_one_that_trying_all_of_them_finds() {
 }
 
 #[test]
+fn no_box_in_a_region_is_left_out() {
+    let mut overlapping = 0;
+    for (seed, (name, boxes)) in zoo().into_iter().enumerate() {
+        let tree = tree(&boxes);
+        let mut r = Random(300 + seed as u64, 0);
+        let size = tree.bounds().half_size().max_element();
+        for _ in 0..100 {
+            let ray = aimed(&boxes, tree.bounds(), &mut r);
+            let reach = [0.0, 0.1, f64::INFINITY][r.below(3)];
+            let half = r.point(size * reach);
+            let region = around(
+                ray.origin,
+                if half.is_nan() { DVec3::INFINITY } else { half },
+            );
+            let mut shown = vec![false; boxes.len()];
+            assert!(!tree.any_overlapping(&region, |item| {
+                assert!(!std::mem::replace(&mut shown[item as usize], true));
+                false
+            }));
+            let wanted = |b: &Aabb| !b.is_empty() && b.overlaps(&region);
+            for (b, &shown) in boxes.iter().zip(&shown) {
+                assert!(shown || !wanted(b), "{name}: {region:?} {b:?}");
+                overlapping += u32::from(wanted(b));
+            }
+            let any = tree.any_overlapping(&region, |item| wanted(&boxes[item as usize]));
+            assert_eq!(any, boxes.iter().any(wanted), "{name}");
+        }
+    }
+    assert!(overlapping > 10_000, "{overlapping}");
+}
+
+#[test]
 fn the_same_bytes_for_any_number_of_threads() {
     let mut r = Random(3, 0);
     let mut boxes: Vec<_> = (0..40_000)

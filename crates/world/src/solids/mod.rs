@@ -160,7 +160,9 @@ impl Solids {
     /// The bytes of the tree and its leaves, for hashing.
     pub(crate) fn words(&self) -> impl Iterator<Item = u32> + '_ {
         let tree = self.tree.iter().flat_map(CellTree::words);
+        let meshes = self.meshes.iter();
         tree.chain(self.leaves.words())
+            .chain(meshes.flat_map(|mesh| mesh.solid.triangles().tree_words()))
     }
 
     pub(crate) fn surface_count(&self) -> usize {

@@ -7,7 +7,7 @@ use octray_geometry::mesh::{MeshError, MeshSolid};
 use octray_geometry::{FaceId, MaterialId, Sheet, Solid};
 use octray_math::Aabb;
 use octray_scene::{Object, ObjectId, Scene, Shape};
-use octray_tree::{CellTree, Criteria, cell_tree};
+use octray_tree::{CellTree, Criteria, WideTreeConfig, cell_tree};
 
 use super::cells::{Cells, Content};
 use super::{Leaves, MeshSurface, Ranked, Solids};
@@ -53,13 +53,15 @@ impl<'a> Candidate<'a> {
 }
 
 impl Solids {
-    /// The solids of the scene; with `criteria` in an octree, else for brute force.
+    /// The solids of the scene; with `criteria` in an octree, else for brute force. The triangles of
+    /// mesh operands get octrees of their own if there is a configuration.
     ///
     /// # Errors
     /// A mesh operand cannot be used as a solid; the object's name comes with the reason.
     pub(crate) fn prepare(
         scene: &Scene,
         criteria: Option<&Criteria>,
+        triangles: Option<&WideTreeConfig>,
     ) -> Result<Self, (String, MeshError)> {
         let objects = scene.objects().iter().enumerate();
         let mut candidates: Vec<Candidate<'_>> = objects
@@ -91,6 +93,7 @@ impl Solids {
             &ranked,
             scene,
             surfaces.len(),
+            triangles,
         )?;
 
         let mut root = Content::default();
@@ -232,6 +235,7 @@ fn mesh_surfaces(
     ranked: &[Ranked],
     scene: &Scene,
     first_mesh_surface: usize,
+    config: Option<&WideTreeConfig>,
 ) -> Result<Vec<MeshSurface>, (String, MeshError)> {
     let mut literals = vec![0; operands.len()];
     for (literal, face) in faces.iter().enumerate() {
@@ -242,7 +246,8 @@ fn mesh_surfaces(
     let mut first_face = faces.len() as u32;
     let mut meshes = Vec::with_capacity(operands.len());
     for (operand, literal) in operands.iter().zip(literals) {
-        let solid = MeshSolid::new(&operand.mesh, &operand.world_from_mesh).map_err(|error| {
+        let solid = MeshSolid::new(&operand.mesh, &operand.world_from_mesh, config);
+        let solid = solid.map_err(|error| {
             let object = ranked[face_owner[literal as usize] as usize].object;
             (scene.objects()[object.0 as usize].name.clone(), error)
         })?;

@@ -8,7 +8,7 @@ use super::sweep::Event;
 use crate::Counters;
 use crate::line::Line;
 use octray_geometry::FaceId;
-use octray_tree::WalkStack;
+use octray_tree::{WalkCost, WalkStack};
 
 /// A crossing of a surface, in the line's parameter.
 #[derive(Clone, Copy, Debug)]
@@ -97,7 +97,9 @@ impl Solids {
                 None => {
                     let mesh = &self.meshes[index - self.surfaces.len()].solid;
                     scratch.mesh_roots.clear();
-                    counters.triangle_tests += mesh.crossings(&line.ray, &mut scratch.mesh_roots);
+                    let mut cost = WalkCost::default();
+                    mesh.crossings(&line.ray, &mut scratch.mesh_roots, &mut cost);
+                    counters.add_walk(&cost);
                     let found = scratch.mesh_roots.iter();
                     scratch.roots.extend(found.map(|c| Root {
                         s: c.t,
