@@ -100,6 +100,7 @@ impl SlabRay {
     /// `direction` has its largest component in `[1, 2)`; `origin` and `slack` are finite in
     /// `f32`, and `slack >= 2^-41`.
     #[must_use]
+    #[inline]
     pub fn new(origin: [f64; 3], direction: [f64; 3], slack: f64) -> Self {
         let mut ray = Self {
             near_plane: [0; 3],

@@ -114,23 +114,24 @@ impl TriangleRay {
     #[must_use]
     #[inline]
     pub fn intersect(&self, corners: [DVec3; 3]) -> Option<TriangleHit> {
-        let [(a, az), (b, bz), (c, cz)] = corners.map(|v| self.sheared(v));
+        // Written out: the closures of `map` are not always inlined, and this is the hottest code.
+        let [a, b, c] = corners;
+        let ((a, az), (b, bz), (c, cz)) = (self.sheared(a), self.sheared(b), self.sheared(c));
         let edges = [Edge::new(b, c), Edge::new(c, a), Edge::new(a, b)];
-        let values = edges.map(Edge::value);
-        // Also true for NaN: such a value is looked at again.
-        let unsure = !values.iter().all(|&e| e > 0.0) && !values.iter().all(|&e| e < 0.0);
-        let leaving = if unsure {
-            // Two clear and opposite signs are a miss without more ado.
-            if values.iter().any(|&e| e > 0.0) && values.iter().any(|&e| e < 0.0) {
-                return None;
-            }
-            unanimous([
-                sign(values[0], b, c),
-                sign(values[1], c, a),
-                sign(values[2], a, b),
-            ])?
+        let values = [edges[0].value(), edges[1].value(), edges[2].value()];
+        let [u, v, w] = values;
+        let (some_front, some_back) =
+            (u > 0.0 || v > 0.0 || w > 0.0, u < 0.0 || v < 0.0 || w < 0.0);
+        // Two clear and opposite signs are a miss without more ado.
+        if some_front && some_back {
+            return None;
+        }
+        let clear = (u > 0.0 && v > 0.0 && w > 0.0) || (u < 0.0 && v < 0.0 && w < 0.0);
+        // Zeros (and NaN, from products that overflow) are looked at again.
+        let leaving = if clear {
+            u > 0.0
         } else {
-            values[0] > 0.0
+            unanimous([sign(u, b, c), sign(v, c, a), sign(w, a, b)])?
         };
         let weights = weights(edges, values, [a, b, c]);
         let (t, barycentric) = self.parameter(weights, [az, bz, cz]);
@@ -143,6 +144,7 @@ impl TriangleRay {
 
     /// Interpolates the depth, starting from the corner with the largest weight (the nearer one of
     /// equals), so that equal depths come out as they are and the order of corners is no matter.
+    #[inline]
     fn parameter(&self, weights: [f64; 3], depths: [f64; 3]) -> (f64, [f64; 3]) {
         let mut first = 0;
         for i in 1..3 {

@@ -56,8 +56,11 @@ impl TriangleTree {
 
     /// The corners of a triangle.
     #[must_use]
+    #[inline]
     pub fn corners(&self, triangle: u32) -> [DVec3; 3] {
-        self.triangles[triangle as usize].map(|i| self.positions[i as usize])
+        let [a, b, c] = self.triangles[triangle as usize];
+        let p = &self.positions;
+        [p[a as usize], p[b as usize], p[c as usize]]
     }
 
     fn bounds(&self, triangle: u32) -> Aabb {
@@ -84,6 +87,7 @@ impl TriangleTree {
     ///
     /// All triangles up to the final end are shown, those at the end itself too, in no particular
     /// order. `cost.items` counts triangles tested.
+    #[inline]
     pub fn closest(
         &self,
         ray: &Ray,
@@ -113,6 +117,7 @@ impl TriangleTree {
     }
 
     /// Whether `visit` is true of any triangle that the line crosses in `span`; stops at the first.
+    #[inline]
     pub fn any(
         &self,
         ray: &Ray,
@@ -135,6 +140,7 @@ impl TriangleTree {
     }
 
     /// Shows `visit` every triangle that the line crosses in `span`, in no particular order.
+    #[inline]
     pub fn all(
         &self,
         ray: &Ray,
