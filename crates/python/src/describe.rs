@@ -180,6 +180,12 @@ pub(crate) fn scene<'py>(py: Python<'py>, scene: &Scene) -> PyResult<Bound<'py, 
     let background = match scene.background() {
         Background::Uniform(rgb) => vec![rgb.to_array()],
         Background::Gradient { map, .. } => map.iter().map(|s| s.color.rgb.to_array()).collect(),
+        // What is seen straight up, level and straight down.
+        sky @ Background::Sky { .. } => {
+            let up = settings.up;
+            let level = up.any_orthonormal_vector();
+            [up, level, -up].map(|d| sky.at(d).to_array()).to_vec()
+        }
     };
     dict.set_item("background", background)?;
     dict.set_item("size", settings.size)?;
