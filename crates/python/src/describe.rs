@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use octray::geometry::{Primitive, Sheet, Solid, SolidNode};
-use octray::math::Aabb;
+use octray::math::{Aabb, DVec3};
 use octray::scene::{
     Background, Camera, Encoding, Light, LightKind, Material, Object, Pattern, Pigment, Projection,
     Scene, Shape, View,
@@ -153,10 +153,14 @@ fn camera<'py>(py: Python<'py>, camera: &Camera) -> PyResult<Bound<'py, PyDict>>
 }
 
 /// The colours of a background from below to above.
-pub(crate) fn background(background: &Background) -> Vec<[f64; 3]> {
+pub(crate) fn background(background: &Background, up: DVec3) -> Vec<[f64; 3]> {
     match background {
         Background::Uniform(rgb) => vec![rgb.to_array()],
         Background::Gradient { map, .. } => map.iter().map(|s| s.color.rgb.to_array()).collect(),
+        // What is seen straight up, level and straight down.
+        sky @ Background::Sky { .. } => {
+            [up, up.any_orthonormal_vector(), -up].map(|d| sky.at(d).to_array()).to_vec()
+        }
     }
 }
 
@@ -185,7 +189,7 @@ pub(crate) fn scene<'py>(py: Python<'py>, scene: &Scene) -> PyResult<Bound<'py, 
     dict.set_item("lights", lights)?;
     let seen = scene.camera().map(|c| camera(py, c)).transpose()?;
     dict.set_item("camera", seen)?;
-    dict.set_item("background", background(scene.background()))?;
+    dict.set_item("background", background(scene.background(), settings.up))?;
     dict.set_item("size", settings.size)?;
     dict.set_item("up", settings.up.to_array())?;
     dict.set_item("units", &settings.units)?;

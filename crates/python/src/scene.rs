@@ -276,7 +276,8 @@ impl Scene {
     /// colour, or to a list of two or more.
     #[getter]
     fn background(&self) -> Vec<[f64; 3]> {
-        crate::describe::background(self.builder.so_far().background())
+        let scene = self.builder.so_far();
+        crate::describe::background(scene.background(), scene.settings().up)
     }
 
     #[setter]

@@ -253,6 +253,14 @@ impl SceneBuilder {
         if let Some(camera) = &scene.camera {
             check_camera(camera, &mut errors);
         }
+        if let Background::Sky { layers, .. } = &scene.background {
+            let owner = "background".to_owned();
+            let mut numbers = Numbers {
+                owner,
+                errors: &mut errors,
+            };
+            layers.iter().for_each(|l| check_pigment(l, &mut numbers));
+        }
         if errors.is_empty() {
             Ok(self.scene)
         } else {

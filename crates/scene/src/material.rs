@@ -392,6 +392,14 @@ pub enum Background {
         /// Colours by position in `[0, 1]`, sorted, at least one.
         map: Vec<ColorStop>,
     },
+    /// By direction: pigments at the point where it meets the unit sphere about the origin, each
+    /// seen through those above it.
+    Sky {
+        /// What is seen through all of them.
+        base: DVec3,
+        /// The lowest first; in the frame of the world.
+        layers: Vec<Pigment>,
+    },
 }
 
 impl Default for Background {
@@ -409,6 +417,13 @@ impl Background {
             Self::Gradient { axis, map } => {
                 let height = direction.normalize_or_zero().dot(*axis);
                 color_at(map, 0.5 + 0.5 * height).rgb
+            }
+            Self::Sky { base, layers } => {
+                let point = direction.normalize_or_zero();
+                layers.iter().fold(*base, |below, layer| {
+                    let color = layer.at(point);
+                    color.rgb * color.opacity() + below * color.transmittance()
+                })
             }
         }
     }
@@ -441,6 +456,40 @@ mod tests {
         assert_eq!(color_at(&map, 0.0).rgb.x, 0.25);
         assert_eq!(color_at(&map, 0.5).rgb.x, 0.5);
         assert_eq!(color_at(&map, 1.0).rgb.x, 0.75);
+    }
+
+    #[test]
+    fn a_sky_is_seen_through_its_upper_layers() {
+        let veil = Color {
+            rgb: DVec3::ONE,
+            filter: 0.0,
+            transmit: 0.75,
+        };
+        let background = Background::Sky {
+            base: DVec3::X,
+            layers: vec![
+                Pigment::Pattern {
+                    pattern: Pattern::Gradient {
+                        axis: DVec3::Z,
+                        map: vec![
+                            ColorStop {
+                                position: 0.0,
+                                color: Color::default(),
+                            },
+                            ColorStop {
+                                position: 1.0,
+                                color: Color::rgb(0.0, 0.0, 1.0),
+                            },
+                        ],
+                    },
+                    pattern_from_world: DAffine3::IDENTITY,
+                },
+                Pigment::Uniform(veil),
+            ],
+        };
+        // 30 degrees above the horizon the gradient is at one half, whatever the length.
+        let seen = background.at(DVec3::new(3.0_f64.sqrt(), 0.0, 1.0) * 5.0);
+        assert!((seen - DVec3::new(0.25, 0.25, 0.25 + 0.75 * 0.5)).length() < 1e-12);
     }
 
     #[test]

@@ -98,7 +98,7 @@ impl Reader<'_> {
             }
             _ => {
                 let known = DIRECTIVES.iter().copied();
-                let near = super::scope::nearest(name, known);
+                let near = crate::spelling::nearest(name, known);
                 let help = near.map(|near| format!("a similar directive exists: `#{near}`"));
                 self.fail_with_help(span, format!("there is no directive `#{name}`"), help)
             }

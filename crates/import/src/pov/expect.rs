@@ -126,7 +126,7 @@ impl Reader<'_> {
     /// Whether an undeclared identifier may be one of an include that is not known in full.
     /// Reports it either way.
     pub(super) fn undeclared<T>(&mut self, word: &str, span: crate::Span) -> Parsed<T> {
-        let near = super::scope::nearest(word, self.scopes.names().chain(super::KEYWORDS));
+        let near = crate::spelling::nearest(word, self.scopes.names().chain(super::KEYWORDS));
         let help = near.map(|name| format!("a similar name exists: `{name}`"));
         self.fail_with_help(span, format!("`{word}` is not declared"), help)
     }

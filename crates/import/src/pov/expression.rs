@@ -3,7 +3,7 @@
 use std::rc::Rc;
 
 use octray_math::DVec3;
-use octray_scene::Color;
+use octray_scene::{Color, srgb_to_linear};
 
 use super::lexer::{Kind, Token};
 use super::reader::{Parsed, Reader};
@@ -438,16 +438,7 @@ fn arranged(key: &str, terms: Terms) -> Color {
         _ => {}
     }
     if !linear {
-        color.rgb = DVec3::from_array(color.rgb.to_array().map(linear_of_srgb));
+        color.rgb = DVec3::from_array(color.rgb.to_array().map(srgb_to_linear));
     }
     color
-}
-
-/// IEC 61966-2-1, decoding.
-fn linear_of_srgb(x: f64) -> f64 {
-    if x <= 0.04045 {
-        x / 12.92
-    } else {
-        libm::pow((x + 0.055) / 1.055, 2.4)
-    }
 }

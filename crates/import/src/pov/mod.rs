@@ -85,9 +85,13 @@ fn finish(mut reader: Reader<'_>) -> Imported {
     settings.ambient_light = scene.ambient_light.unwrap_or(DVec3::ONE);
     settings.max_generations = scene.max_trace_level.unwrap_or(5.0).clamp(1.0, 256.0) as u32;
     settings.contribution_threshold = scene.adc_bailout.unwrap_or(1.0 / 255.0).max(0.0);
-    builder.set_background(match scene.sky.last() {
-        None => Background::Uniform(scene.background),
-        Some(_) => Background::Uniform(scene.background),
+    builder.set_background(if scene.sky.is_empty() {
+        Background::Uniform(scene.background)
+    } else {
+        Background::Sky {
+            base: scene.background,
+            layers: scene.sky,
+        }
     });
     if !diagnostics.has_errors() {
         let mut lowering = Lowering::new(&mut diagnostics, &mut builder, default_texture);

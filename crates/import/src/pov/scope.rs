@@ -105,53 +105,31 @@ impl Scopes {
     }
 }
 
-/// The candidate that is nearest to `name`, where one is near enough to be meant.
-pub(super) fn nearest<'a>(
-    name: &str,
-    candidates: impl Iterator<Item = &'a str>,
-) -> Option<&'a str> {
-    let allowed = (name.chars().count() / 3).clamp(1, 3);
-    candidates
-        .filter(|candidate| candidate.len().abs_diff(name.len()) <= allowed)
-        .map(|candidate| (edit_distance(name, candidate), candidate))
-        .filter(|(distance, _)| *distance <= allowed)
-        .min()
-        .map(|(_, candidate)| candidate)
-}
-
-/// Insertions, deletions and replacements that lead from one to the other (Levenshtein 1966);
-/// case counts for nothing.
-fn edit_distance(a: &str, b: &str) -> usize {
-    let b: Vec<char> = b.to_lowercase().chars().collect();
-    let mut row: Vec<usize> = (0..=b.len()).collect();
-    for (i, x) in a.to_lowercase().chars().enumerate() {
-        let mut diagonal = row[0];
-        row[0] = i + 1;
-        for (j, y) in b.iter().enumerate() {
-            let replaced = diagonal + usize::from(x != *y);
-            diagonal = row[j + 1];
-            row[j + 1] = replaced.min(diagonal + 1).min(row[j] + 1);
-        }
-    }
-    row[b.len()]
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::pov::value::Terms;
 
-    #[test]
-    fn edit_distances() {
-        assert_eq!(edit_distance("kitten", "sitting"), 3);
-        assert_eq!(edit_distance("Red", "red"), 0);
-        assert_eq!(edit_distance("", "abc"), 3);
+    fn number(scopes: &Scopes, name: &str) -> f64 {
+        match scopes.get(name) {
+            Some(Value::Terms(terms)) => terms.v[0],
+            other => panic!("{name}: {other:?}"),
+        }
     }
 
     #[test]
-    fn near_names_are_found_and_far_ones_are_not() {
-        let names = ["White", "Wheat", "SteelBlue"];
-        assert_eq!(nearest("Whte", names.into_iter()), Some("White"));
-        assert_eq!(nearest("SteelBleu", names.into_iter()), Some("SteelBlue"));
-        assert_eq!(nearest("Copper", names.into_iter()), None);
+    fn a_declared_parameter_changes_the_name_that_was_given_for_it() {
+        let value = |x: f64| Value::Terms(Terms::number(x));
+        let mut scopes = Scopes::new();
+        scopes.declare("A".into(), value(1.0));
+        scopes.open();
+        scopes.local("P".into(), value(1.0));
+        scopes.bind("P".into(), "A".into());
+        scopes.declare("P".into(), value(2.0));
+        scopes.local("A".into(), value(7.0));
+        assert_eq!((number(&scopes, "P"), number(&scopes, "A")), (2.0, 7.0));
+        scopes.truncate(1);
+        assert_eq!(number(&scopes, "A"), 2.0);
+        assert!(scopes.get("P").is_none());
     }
 }

@@ -2,8 +2,6 @@
 
 pub(super) mod colors;
 
-use super::scope;
-
 /// A standard include.
 pub(super) struct Standard {
     /// Declarations in the scene language; empty where there are none.
@@ -93,5 +91,5 @@ pub(super) fn find(name: &str) -> Option<Standard> {
 
 /// A standard include with a similar name.
 pub(super) fn nearest(name: &str) -> Option<&'static str> {
-    scope::nearest(name, NAMES.into_iter())
+    crate::spelling::nearest(name, NAMES)
 }
