@@ -2,6 +2,7 @@
 //!
 //! OpenSCAD's polyhedra are made throughout (`facets`), so that both show the same solid.
 
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -106,152 +107,161 @@ impl Silhouette {
     }
 }
 
-/// The box around the points of the world, closer than [`World::bounds`] where something is cut
-/// off: on each side the nearest hit of a grid of parallel rays, then of finer grids around it.
-fn tight_bounds(world: &World) -> Aabb {
-    const GRID: usize = 96;
-    let outer = world.bounds();
-    let mut found = outer;
-    for side in 0..6 {
-        let (axis, up) = (side / 2, side % 2 == 1);
-        let (u, v) = ((axis + 1) % 3, (axis + 2) % 3);
-        let mut direction = DVec3::ZERO;
-        direction[axis] = if up { -1.0 } else { 1.0 };
-        let start = if up {
-            outer.max[axis] + 1.0
-        } else {
-            outer.min[axis] - 1.0
-        };
-        let (mut low, mut high) = (outer.min, outer.max);
-        let mut best = f64::INFINITY;
-        for _ in 0..6 {
-            let step = (high - low) / GRID as f64;
-            let origins: Vec<DVec3> = (0..GRID * GRID)
-                .map(|i| {
-                    let mut origin = DVec3::ZERO;
-                    origin[axis] = start;
-                    origin[u] = low[u] + ((i % GRID) as f64 + 0.5) * step[u];
-                    origin[v] = low[v] + ((i / GRID) as f64 + 0.5) * step[v];
-                    origin
-                })
-                .collect();
-            let queries: Vec<RayQuery> = origins
-                .iter()
-                .map(|&origin| RayQuery::new(Ray::new(origin, direction)))
-                .collect();
-            let mut hits = Vec::new();
-            world.closest(&queries, &mut hits, &mut Counters::default());
-            let nearest = hits
-                .iter()
-                .zip(&origins)
-                .min_by(|a, b| a.0.t.total_cmp(&b.0.t));
-            let Some((hit, &at)) = nearest.filter(|(hit, _)| hit.t <= best) else {
-                break;
-            };
-            best = hit.t;
-            (low, high) = (at - step * 3.0, at + step * 3.0);
-        }
-        if up {
-            found.max[axis] = start - best;
-        } else {
-            found.min[axis] = start + best;
-        }
-    }
-    found
-}
-
-/// The volume inside of all objects: the middle of each cell of a grid stands for the cell.
-fn volume(world: &World, bounds: Aabb, grid: usize) -> f64 {
-    let step = bounds.size() / grid as f64;
+/// The volume inside of all objects, by lines in a direction that no face is parallel to: each
+/// stands for a square of a grid of squares across.
+fn volume(world: &World, grid: usize) -> f64 {
+    let bounds = world.bounds();
+    let direction = DVec3::new(0.81, 0.37, 0.45).normalize();
+    let (u, v) = direction.any_orthonormal_pair();
+    let side = bounds.diagonal();
+    let at = |i: usize| ((i as f64 + 0.5) / grid as f64 - 0.5) * side;
     let mut hits = Vec::new();
     let mut length = 0.0;
     for i in 0..grid * grid {
-        let at = |i: usize| i as f64 + 0.5;
-        let offset = DVec3::new(-1.0, at(i % grid) * step.y, at(i / grid) * step.z);
-        let query = RayQuery::new(Ray::new(bounds.min + offset, DVec3::X));
+        let origin = bounds.center() + u * at(i % grid) + v * at(i / grid);
+        let query = RayQuery::new(Ray::new(origin, direction));
         world.crossings(&query, true, &mut hits, &mut Counters::default());
-        for pair in hits.windows(2) {
-            if pair[0].to != Region::OUTSIDE {
-                length += pair[1].t - pair[0].t;
-            }
-        }
+        let inside = hits.windows(2).filter(|pair| pair[0].to != Region::OUTSIDE);
+        length += inside.map(|pair| pair[1].t - pair[0].t).sum::<f64>();
     }
-    length * step.y * step.z
+    length * (side / grid as f64).powi(2)
+}
+
+/// Volume and bounds of what OpenSCAD 2021.01 exports, by the name of the dump.
+fn reference(folder: &Path) -> BTreeMap<String, (f64, Aabb)> {
+    let table = std::fs::read_to_string(folder.join("REFERENCE.tsv")).expect("a table");
+    let row = |line: &str| {
+        let fields: Vec<&str> = line.split('\t').collect();
+        let number = |text: &str| text.parse::<f64>().expect("a number");
+        let box_: Vec<f64> = fields[3].split(' ').map(number).collect();
+        let bounds = Aabb::new(DVec3::from_slice(&box_[..3]), DVec3::from_slice(&box_[3..]));
+        (fields[0].to_owned(), (number(fields[1]), bounds))
+    };
+    table.lines().skip(1).map(row).collect()
+}
+
+/// The picture OpenSCAD has of a dump, rendered or previewed.
+fn picture_of(dump: &Path) -> Option<PathBuf> {
+    let name = dump.file_name()?.to_string_lossy();
+    let stem = name.split('.').next()?;
+    ["render", "preview"]
+        .map(|kind| dump.with_file_name(format!("{stem}.{kind}.png")))
+        .into_iter()
+        .find(|picture| picture.is_file())
+}
+
+fn dumps(folder: &Path) -> Vec<PathBuf> {
+    let entries = std::fs::read_dir(folder).expect("a folder");
+    let mut paths: Vec<PathBuf> = entries
+        .map(|entry| entry.expect("an entry").path())
+        .collect();
+    paths.retain(|path| path.extension().is_some_and(|e| e == "csg"));
+    paths.sort();
+    paths
+}
+
+/// Pixels that may differ, all at the outline: rasterising takes a side where an edge runs through
+/// a pixel's centre. Measured: at most 6 of more than 10 000.
+const PIXELS: usize = 10;
+
+/// Relative difference of volumes that is put down to the grid of lines. Measured: at most 1e-4,
+/// and 6e-4 for a plate with slits (`example023`).
+const VOLUME: f64 = 1e-3;
+
+/// Preparing these takes most of a minute each: they have round shapes of thousands of faces.
+const SLOW: [&str; 3] = [
+    "CSG-modules.2021.csg",
+    "candleStand.2021.csg",
+    "sphere-tests.csg",
+];
+
+fn is_slow(dump: &Path) -> bool {
+    SLOW.iter().any(|name| dump.ends_with(name))
+}
+
+fn compare_silhouettes(dump: &Path, picture: &Path, world: &World, bounds: Aabb) {
+    let expected = Silhouette::of_picture(picture);
+    let ours = Silhouette::of_world(world, bounds, expected.size);
+    let (different, far) = ours.differences(&expected);
+    let areas = (ours.area(), expected.area());
+    assert!(
+        far == 0 && different <= PIXELS,
+        "{}: of {areas:?} {different} differ, {far} not at the outline",
+        dump.display()
+    );
+}
+
+/// Compares the chosen examples with the table and their pictures; says how many.
+fn compare_examples(folder: &Path, choose: impl Fn(&Path) -> bool) -> usize {
+    let mut compared = 0;
+    for (name, (expected, bounds)) in reference(folder) {
+        let dump = folder.join(&name);
+        let Some(scene) = scene(&dump).filter(|_| choose(&dump)) else {
+            continue;
+        };
+        let world = world(scene);
+        if let Some(picture) = picture_of(&dump) {
+            compare_silhouettes(&dump, &picture, &world, bounds);
+        }
+        // A few small balls in a large box slip through a grid.
+        let is_sparse = expected < bounds.size().element_product() * 1e-2;
+        let measured = volume(&world, 256);
+        let error = (measured / expected - 1.0).abs();
+        assert!(
+            error < VOLUME || is_sparse,
+            "{name}: {measured}, not {expected}"
+        );
+        compared += 1;
+    }
+    compared
+}
+
+/// Compares the chosen regression dumps with their pictures; says how many.
+fn compare_dumps(folder: &Path, choose: impl Fn(&Path) -> bool) -> usize {
+    let mut compared = 0;
+    for dump in dumps(folder).into_iter().filter(|dump| choose(dump)) {
+        // OpenSCAD aims at the intersection, whose bounds are not known here before it is traced;
+        // the same solid is `example014`.
+        if dump.ends_with("intersection_for-tests.csg") {
+            continue;
+        }
+        let (Some(picture), Some(scene)) = (picture_of(&dump), scene(&dump)) else {
+            continue;
+        };
+        // Some pictures belong to examples of the same name.
+        if scene.objects().is_empty() {
+            continue;
+        }
+        let world = world(scene);
+        compare_silhouettes(&dump, &picture, &world, world.bounds());
+        compared += 1;
+    }
+    compared
 }
 
 #[test]
-fn explore() {
-    let mut reference = std::collections::BTreeMap::new();
-    let folder = corpus("openscad/examples").unwrap();
-    for line in std::fs::read_to_string(folder.join("REFERENCE.tsv"))
-        .unwrap()
-        .lines()
-        .skip(1)
-    {
-        let f: Vec<&str> = line.split('\t').collect();
-        let b: Vec<f64> = f[3]
-            .split_whitespace()
-            .map(|x| x.parse().unwrap())
-            .collect();
-        reference.insert(f[0].to_owned(), (f[1].parse::<f64>().unwrap(), b));
+fn examples_have_the_silhouettes_and_volumes_of_openscad() {
+    if let Some(folder) = corpus("openscad/examples") {
+        let compared = compare_examples(&folder, |dump| !is_slow(dump));
+        assert!(compared >= 14, "{compared}");
     }
-    for folder in ["openscad/examples", "openscad/dump"] {
-        let Some(folder) = corpus(folder) else { return };
-        let mut paths: Vec<PathBuf> = std::fs::read_dir(folder)
-            .unwrap()
-            .map(|e| e.unwrap().path())
-            .collect();
-        paths.sort();
-        for path in paths {
-            let name = path.file_name().unwrap().to_string_lossy().into_owned();
-            if !name.ends_with(".csg") || name.ends_with(".master.csg") {
-                continue;
-            }
-            let picture =
-                path.with_file_name(format!("{}.render.png", name.split('.').next().unwrap()));
-            let picture = if picture.is_file() {
-                picture
-            } else {
-                path.with_file_name(format!("{}.preview.png", name.split('.').next().unwrap()))
-            };
-            if !picture.is_file() {
-                continue;
-            }
-            let Some(scene) = scene(&path) else { continue };
-            if scene.objects().is_empty() {
-                println!("{name}: empty");
-                continue;
-            }
-            let t = std::time::Instant::now();
-            let world = world(scene);
-            let prep = t.elapsed();
-            let bounds = tight_bounds(&world);
-            let tb = t.elapsed() - prep;
-            let expected = Silhouette::of_picture(&picture);
-            let ours = Silhouette::of_world(&world, bounds, expected.size);
-            let (d, far) = ours.differences(&expected);
-            println!(
-                "{name}: area {} of {}, differ {d}, far {far} prep {prep:?} tight {tb:?} {:?}",
-                ours.area(),
-                expected.area(),
-                t.elapsed()
-            );
-            if let Some((v, b)) = reference.get(&name) {
-                let e = (0..3)
-                    .map(|i| {
-                        (bounds.min[i] - b[i])
-                            .abs()
-                            .max((bounds.max[i] - b[i + 3]).abs())
-                    })
-                    .fold(0.0, f64::max);
-                let t = std::time::Instant::now();
-                let m = volume(&world, bounds, 256);
-                println!(
-                    "     bounds error {e}, volume {m} of {v}: {:.3e} {:?}",
-                    m / v - 1.0,
-                    t.elapsed()
-                );
-            }
-        }
+}
+
+#[test]
+fn regression_dumps_have_the_silhouettes_of_openscad() {
+    if let Some(folder) = corpus("openscad/dump") {
+        let compared = compare_dumps(&folder, |dump| !is_slow(dump));
+        assert!(compared >= 30, "{compared}");
+    }
+}
+
+#[test]
+#[ignore = "takes minutes"]
+fn slow_dumps_have_the_silhouettes_and_volumes_of_openscad() {
+    if let Some(folder) = corpus("openscad/examples") {
+        assert_eq!(compare_examples(&folder, is_slow), 2);
+    }
+    if let Some(folder) = corpus("openscad/dump") {
+        assert_eq!(compare_dumps(&folder, is_slow), 1);
     }
 }

@@ -1,17 +1,17 @@
 //! Statements into solids with materials.
 
-use octray_geometry::{Sheet, Solid, SolidNode};
-use octray_math::{DAffine3, transform};
-use octray_scene::{MaterialId, Object, SceneBuilder, Shape};
+use octray_geometry::{Solid, SolidNode};
+use octray_math::DAffine3;
+use octray_scene::{MaterialId, SceneBuilder};
 
-use crate::{Diagnostic, Diagnostics, Options, Severity, Span};
+use crate::{Diagnostics, Options, Span};
 
 use super::arguments::Arguments;
 use super::budget::Budget;
-use super::modules::{self, Module};
+use super::modules::Module;
 use super::operand::{OpenFaces, Operand, Operation, Part};
 use super::paint::{Palette, Rgba, color_argument, is_complete};
-use super::placement::matrix;
+use super::placement::{in_plane, matrix};
 use super::polyhedron::Polyhedron;
 use super::primitives::Workshop;
 use super::syntax::Statement;
@@ -21,12 +21,14 @@ const MAX_DEPTH: u32 = 200;
 
 /// What holds around a statement.
 #[derive(Clone, Copy, Debug)]
-struct Surroundings {
+pub(super) struct Surroundings {
     /// The colour that counts so far: of the outermost `color()` that says everything, else of
     /// the innermost.
-    color: Option<Rgba>,
+    pub(super) color: Option<Rgba>,
     /// Whether the statement is taken away from something, an odd number of times.
-    subtracted: bool,
+    pub(super) subtracted: bool,
+    /// Between which heights flat shapes are drawn out; `None` outside of `linear_extrude`.
+    pub(super) slab: Option<[f64; 2]>,
 }
 
 /// Makes objects of statements.
@@ -35,7 +37,7 @@ pub(super) struct Lowering<'l> {
     pub(super) options: &'l Options,
     pub(super) budget: Budget,
     pub(super) builder: SceneBuilder,
-    palette: Palette,
+    pub(super) palette: Palette,
 }
 
 impl<'l> Lowering<'l> {
@@ -49,86 +51,8 @@ impl<'l> Lowering<'l> {
         }
     }
 
-    /// Adds an object for each statement, and for each child of groups, unions, transforms and
-    /// colours at the top: together they are the same set of points, and keep their own names.
-    pub(super) fn scene(&mut self, statements: &[Statement<'_>]) {
-        let around = Surroundings {
-            color: None,
-            subtracted: false,
-        };
-        for statement in statements {
-            self.object(statement, DAffine3::IDENTITY, around);
-        }
-    }
-
-    fn object(&mut self, statement: &Statement<'_>, place: DAffine3, around: Surroundings) {
-        if is_absent(statement) {
-            return;
-        }
-        match Module::called(statement.name) {
-            Some(Module::Union) => {
-                for child in &statement.children {
-                    self.object(child, place, around);
-                }
-                return;
-            }
-            Some(Module::Color) => {
-                let around = self.within_color(statement, around);
-                for child in &statement.children {
-                    self.object(child, place, around);
-                }
-                return;
-            }
-            Some(Module::Transform) => {
-                let own = matrix(statement, self.diagnostics);
-                // What is flattened must first be seen, to say so only where it matters.
-                if transform::is_invertible(&(place * own)) {
-                    for child in &statement.children {
-                        self.object(child, place * own, around);
-                    }
-                    return;
-                }
-            }
-            _ => {}
-        }
-        let operand = self.operand(statement, around);
-        let operand = self.transformed(operand, place, statement.span);
-        let line = self.diagnostics.line(statement.span);
-        let name = format!("{} in line {line}", statement.name);
-        let shape = match operand {
-            Operand::Solid(part) if !part.is_empty() => Shape::Solid(part.solid),
-            Operand::Open(faces) => {
-                let message = format!("{}; it is shown as a surface without inside", faces.why);
-                self.diagnostics.warning(faces.span, message);
-                match Sheet::mesh(faces.mesh).transform(faces.place) {
-                    Ok(sheet) => Shape::Sheet(sheet),
-                    Err(error) => {
-                        self.diagnostics.warning(faces.span, error.to_string());
-                        return;
-                    }
-                }
-            }
-            _ => return,
-        };
-        let (material, is_clear) = match around.color {
-            Some(color) => {
-                let id = self.palette.color(color, &mut self.builder);
-                (id, (0.0..1.0).contains(&color[3]))
-            }
-            None => (self.palette.surface(&mut self.builder), false),
-        };
-        self.builder.add_object(Object {
-            name,
-            shape,
-            material,
-            // Opaque things show inside of clear ones.
-            priority: -i32::from(is_clear),
-            casts_shadows: true,
-        });
-    }
-
     /// What a statement comes to, without the colour around it.
-    fn operand(&mut self, statement: &Statement<'_>, around: Surroundings) -> Operand {
+    pub(super) fn operand(&mut self, statement: &Statement<'_>, around: Surroundings) -> Operand {
         if is_absent(statement) {
             return Operand::Absent;
         }
@@ -137,14 +61,29 @@ impl<'l> Lowering<'l> {
             return Operand::Unknown;
         };
         let operand = match module {
+            Module::Cube
+            | Module::Sphere
+            | Module::Cylinder
+            | Module::Polyhedron
+            | Module::LinearExtrude
+                if around.slab.is_some() =>
+            {
+                let message = format!("`{}` is a solid inside of `linear_extrude`", statement.name);
+                self.left_out(statement.span, &message);
+                Operand::OfOtherDimension
+            }
             Module::Cube | Module::Sphere | Module::Cylinder | Module::Polyhedron => {
                 self.primitive(module, statement)
             }
+            Module::LinearExtrude => self.extruded(statement, around),
             Module::Union => self.combined(Operation::Union, statement, around),
             Module::Intersection => self.combined(Operation::Intersection, statement, around),
             Module::Difference => self.combined(Operation::Difference, statement, around),
             Module::Transform => {
-                let own = matrix(statement, self.diagnostics);
+                let mut own = matrix(statement, self.diagnostics);
+                if around.slab.is_some() {
+                    own = in_plane(own);
+                }
                 let operand = self.combined(Operation::Union, statement, around);
                 self.transformed(operand, own, statement.span)
             }
@@ -160,19 +99,36 @@ impl<'l> Lowering<'l> {
                 }
             }
             // An operation on nothing is nothing, supported or not.
-            Module::FlatOperation if statement.children.is_empty() => Operand::Flat,
+            Module::FlatOperation if statement.children.is_empty() && around.slab.is_none() => {
+                Operand::OfOtherDimension
+            }
+            Module::FlatOperation if statement.children.is_empty() => {
+                Operand::Solid(Part::leaf(Solid::empty()))
+            }
             Module::UnsupportedOperation if statement.children.is_empty() => {
                 Operand::Solid(Part::leaf(Solid::empty()))
             }
-            Module::FlatShape | Module::FlatOperation => {
+            Module::Circle
+            | Module::Square
+            | Module::Polygon
+            | Module::FlatShape
+            | Module::FlatOperation
+                if around.slab.is_none() =>
+            {
                 let message = format!(
-                    "`{}` is two-dimensional, which is not supported",
+                    "`{}` is two-dimensional, which is only supported inside of `linear_extrude`",
                     statement.name
                 );
                 self.left_out(statement.span, &message);
-                Operand::Flat
+                Operand::OfOtherDimension
             }
-            Module::UnsupportedShape | Module::UnsupportedOperation => {
+            Module::Circle | Module::Square | Module::Polygon => {
+                self.flat_shape(module, statement, around.slab.unwrap_or_default())
+            }
+            Module::FlatShape
+            | Module::FlatOperation
+            | Module::UnsupportedShape
+            | Module::UnsupportedOperation => {
                 self.left_out(
                     statement.span,
                     &format!("`{}` is not supported", statement.name),
@@ -192,16 +148,20 @@ impl<'l> Lowering<'l> {
         }
     }
 
+    pub(super) fn workshop(&mut self) -> Workshop<'_> {
+        Workshop {
+            diagnostics: self.diagnostics,
+            options: self.options,
+            budget: &mut self.budget,
+        }
+    }
+
     fn primitive(&mut self, module: Module, statement: &Statement<'_>) -> Operand {
         if let Some(child) = statement.children.first() {
             let message = format!("`{}` takes no children; they are left out", statement.name);
             self.diagnostics.warning(child.span, message);
         }
-        let mut workshop = Workshop {
-            diagnostics: self.diagnostics,
-            options: self.options,
-            budget: &mut self.budget,
-        };
+        let mut workshop = self.workshop();
         let solid = match module {
             Module::Cube => workshop.cube(statement),
             Module::Sphere => workshop.sphere(statement),
@@ -221,7 +181,7 @@ impl<'l> Lowering<'l> {
         Operand::Solid(Part::leaf(solid))
     }
 
-    fn combined(
+    pub(super) fn combined(
         &mut self,
         operation: Operation,
         statement: &Statement<'_>,
@@ -257,7 +217,11 @@ impl<'l> Lowering<'l> {
     }
 
     /// What holds inside a `color()`.
-    fn within_color(&mut self, statement: &Statement<'_>, around: Surroundings) -> Surroundings {
+    pub(super) fn within_color(
+        &mut self,
+        statement: &Statement<'_>,
+        around: Surroundings,
+    ) -> Surroundings {
         let arguments = Arguments::bind(statement, &["c", "alpha"], &[], self.diagnostics);
         let own = color_argument(&arguments, self.diagnostics);
         let says_something = own.iter().any(|channel| *channel >= 0.0);
@@ -272,7 +236,7 @@ impl<'l> Lowering<'l> {
         }
     }
 
-    fn transformed(&mut self, operand: Operand, place: DAffine3, span: Span) -> Operand {
+    pub(super) fn transformed(&mut self, operand: Operand, place: DAffine3, span: Span) -> Operand {
         if place == DAffine3::IDENTITY {
             return operand;
         }
@@ -299,35 +263,10 @@ impl<'l> Lowering<'l> {
         self.diagnostics.warning(span, message);
         Operand::Solid(Part::leaf(Solid::empty()))
     }
-
-    fn left_out(&mut self, span: Span, why: &str) {
-        self.diagnostics
-            .warning(span, format!("{why}; it is left out"));
-    }
-
-    fn unknown_module(&mut self, statement: &Statement<'_>) {
-        let name = statement.name;
-        let help = if modules::is_evaluated(name) {
-            Some(
-                "a dump has the outcome of this in its place; export one with \
-                 `openscad -o model.csg model.scad`"
-                    .to_owned(),
-            )
-        } else {
-            let near = crate::spelling::nearest(name, modules::names());
-            near.map(|near| format!("did you mean `{near}`?"))
-        };
-        self.diagnostics.push(Diagnostic {
-            severity: Severity::Error,
-            span: Some(statement.span),
-            message: format!("there is no module called `{name}`"),
-            help,
-        });
-    }
 }
 
 /// Whether a mark takes the statement out of the model.
-const fn is_absent(statement: &Statement<'_>) -> bool {
+pub(super) const fn is_absent(statement: &Statement<'_>) -> bool {
     statement.modifiers.background || statement.modifiers.disable
 }
 

@@ -8,6 +8,8 @@
 //! - Top-level statements are a union in OpenSCAD. Here each is an object of its own, also through
 //!   groups, transforms and colours; the set of points is the same. Where opaque parts overlap
 //!   so is the picture; opaque parts show inside of transparent ones.
+//! - `linear_extrude` draws out circles, squares, polygons and set operations of them, without
+//!   twist and scale. Other flat things are not read.
 //! - The outermost `color()` counts, as in OpenSCAD. What has no colour is yellow, and green where
 //!   something without colour was subtracted.
 //! - `%` and `*` take a statement out of the model, `!` leaves only the statement it marks, `#`
@@ -16,10 +18,14 @@
 mod arguments;
 mod budget;
 mod color_names;
+mod cursor;
+mod extrude;
 mod facets;
+mod flat;
 mod lexer;
 mod lower;
 mod modules;
+mod objects;
 mod operand;
 mod orientation;
 mod paint;
@@ -27,6 +33,7 @@ mod parser;
 mod placement;
 mod polyhedron;
 mod primitives;
+mod refusal;
 mod syntax;
 mod text;
 
@@ -34,7 +41,7 @@ use std::path::Path;
 
 use octray_math::DVec3;
 
-use crate::{Diagnostic, Diagnostics, FileSystem, Imported, Options, Severity, Span};
+use crate::{Diagnostics, FileSystem, Imported, Options, Span};
 
 /// Statements take at most this many times the memory of their text.
 const BYTES_PER_BYTE: u64 = 64;
@@ -91,27 +98,6 @@ pub fn import(path: &Path, bytes: Vec<u8>, _files: &dyn FileSystem, options: &Op
             failed(diagnostics)
         }
     }
-}
-
-/// The answer to a `.scad` file: what to do instead.
-#[must_use]
-pub fn refuse_program(path: &Path, bytes: Vec<u8>) -> Imported {
-    let mut diagnostics = Diagnostics::default();
-    diagnostics.add_source(path, bytes);
-    let stem = path.file_stem().map_or_else(
-        || "model".to_owned(),
-        |stem| stem.to_string_lossy().into_owned(),
-    );
-    diagnostics.push(Diagnostic {
-        severity: Severity::Error,
-        span: None,
-        message: "OpenSCAD programs are not run, only their dumps are read".to_owned(),
-        help: Some(format!(
-            "export one with `openscad -o {stem}.csg {}`",
-            path.display()
-        )),
-    });
-    failed(diagnostics)
 }
 
 const fn failed(diagnostics: Diagnostics) -> Imported {

@@ -12,8 +12,8 @@ use crate::Span;
 pub(super) enum Operand {
     /// Switched off: as if it were not written.
     Absent,
-    /// Flat: OpenSCAD leaves it out of an operation on solids.
-    Flat,
+    /// Flat where solids are needed, or solid where something flat is: OpenSCAD leaves it out.
+    OfOtherDimension,
     /// Not supported, and reported: its shape is not known.
     Unknown,
     /// Faces that enclose nothing.
@@ -69,7 +69,7 @@ impl Operation {
     /// Combines the operands. `lose` is told of open faces that cannot take part.
     ///
     /// As in OpenSCAD, an operand without points makes an intersection empty, and a difference if
-    /// it is the first. What is flat takes no part. Of what is not known, nothing is taken away,
+    /// it is the first. What is of the other dimension takes no part. Of what is not known, nothing is taken away,
     /// and nothing is limited by it.
     pub(super) fn combine(
         self,
@@ -84,9 +84,9 @@ impl Operation {
             return present.swap_remove(0);
         }
         let had_any = !present.is_empty();
-        present.retain(|operand| !matches!(operand, Operand::Flat));
+        present.retain(|operand| !matches!(operand, Operand::OfOtherDimension));
         if had_any && present.is_empty() {
-            return Operand::Flat;
+            return Operand::OfOtherDimension;
         }
         let first_is_solid = matches!(present.first(), Some(Operand::Solid(_)));
         let mut unknown = false;

@@ -1,8 +1,9 @@
 //! Tokens into statements: recursive descent that goes on after a mistake.
 
-use crate::{Diagnostic, Diagnostics, Severity, SourceId, Span};
+use crate::{Diagnostics, SourceId, Span};
 
-use super::lexer::{Lexeme, Token, tokens};
+use super::cursor::{Parser, Reported};
+use super::lexer::{Token, tokens};
 use super::syntax::{Argument, Modifiers, Statement, Value};
 use super::text::unescape;
 
@@ -39,91 +40,7 @@ pub(super) fn parse<'text>(
     statements
 }
 
-/// A mistake that has been reported; the statement it is in is given up.
-struct Reported;
-
-struct Parser<'text, 'd> {
-    text: &'text str,
-    lexemes: Vec<Lexeme>,
-    at: usize,
-    nesting: u32,
-    end_is_reported: bool,
-    source: SourceId,
-    diagnostics: &'d mut Diagnostics,
-}
-
 impl<'text> Parser<'text, '_> {
-    fn peek(&self) -> Option<Token> {
-        self.lexemes.get(self.at).map(|lexeme| lexeme.token)
-    }
-
-    fn take(&mut self, token: Token) -> bool {
-        let found = self.peek() == Some(token);
-        self.at += usize::from(found);
-        found
-    }
-
-    fn span_at(&self, at: usize) -> Span {
-        let end = self.text.len();
-        let range = self.lexemes.get(at).map_or(end..end, |lexeme| {
-            lexeme.start as usize..lexeme.end as usize
-        });
-        Span::new(self.source, range)
-    }
-
-    fn here(&self) -> Span {
-        self.span_at(self.at)
-    }
-
-    fn last_span(&self) -> Span {
-        self.span_at(self.at.saturating_sub(1))
-    }
-
-    fn text_at(&self, at: usize) -> &'text str {
-        let span = self.span_at(at);
-        &self.text[span.start..span.end]
-    }
-
-    fn error(&mut self, span: Span, message: impl Into<String>) -> Reported {
-        self.diagnostics.error(span, message);
-        Reported
-    }
-
-    fn error_with_help(&mut self, span: Span, message: String, help: &str) -> Reported {
-        self.diagnostics.push(Diagnostic {
-            severity: Severity::Error,
-            span: Some(span),
-            message,
-            help: Some(help.to_owned()),
-        });
-        Reported
-    }
-
-    /// Reports that something else was expected at the present token.
-    fn expected(&mut self, what: &str) -> Reported {
-        let span = self.here();
-        let message = match self.peek() {
-            None => format!("expected {what}, but the file ends here"),
-            Some(Token::OpenText) => "this string has no closing quote".to_owned(),
-            Some(Token::Unknown) if self.text_at(self.at).starts_with("/*") => {
-                "this comment has no end".to_owned()
-            }
-            Some(_) => {
-                let found: String = self.text_at(self.at).chars().take(40).collect();
-                format!("expected {what}, found `{found}`")
-            }
-        };
-        self.error(span, message)
-    }
-
-    fn expect(&mut self, token: Token, what: &str) -> Result<(), Reported> {
-        if self.take(token) {
-            Ok(())
-        } else {
-            Err(self.expected(what))
-        }
-    }
-
     /// One level deeper; the caller goes back up.
     fn descend(&mut self) -> Result<(), Reported> {
         if self.nesting == MAX_NESTING {

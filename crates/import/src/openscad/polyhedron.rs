@@ -65,7 +65,7 @@ impl Workshop<'_> {
         rows
     }
 
-    fn assemble(
+    pub(super) fn assemble(
         &mut self,
         corners: Vec<DVec3>,
         mut faces: Vec<Vec<u32>>,

@@ -20,14 +20,14 @@ pub(super) struct Workshop<'w> {
 
 impl Workshop<'_> {
     /// The solid without points, with the reason.
-    fn empty(&mut self, span: Span, why: &str) -> Solid {
+    pub(super) fn empty(&mut self, span: Span, why: &str) -> Solid {
         self.diagnostics
             .warning(span, format!("{why}: it is empty"));
         Solid::empty()
     }
 
     /// The polyhedron OpenSCAD makes, if it was asked for, or the exact shape.
-    fn round(
+    pub(super) fn round(
         &mut self,
         span: Span,
         resolution: Resolution,
