@@ -1,9 +1,10 @@
 //! A good look for what comes without one: material, lights, camera and background.
 
+use octray_geometry::Sheet;
 use octray_math::{Aabb, DVec3};
 use octray_scene::{
     Background, Camera, Color, ColorStop, Finish, Interior, Light, Material, Pigment, Scene,
-    SceneBuilder,
+    SceneBuilder, Shape,
 };
 
 /// Vertical field of view of default cameras, in radians: 30 degrees, a mild telephoto lens.
@@ -14,9 +15,9 @@ pub const VERTICAL_FOV: f64 = std::f64::consts::PI / 6.0;
 pub fn default_material() -> Material {
     Material {
         name: "default".to_owned(),
-        pigment: Pigment::Uniform(Color::rgb(0.58, 0.54, 0.49)),
+        pigment: Pigment::Uniform(Color::rgb(0.62, 0.56, 0.49)),
         finish: Finish {
-            ambient: DVec3::splat(0.12),
+            ambient: DVec3::splat(0.08),
             diffuse: 0.85,
             specular: 0.25,
             roughness: 0.03,
@@ -32,9 +33,44 @@ pub fn default_material() -> Material {
 /// where y is up. `None` for an empty or unbounded box.
 #[must_use]
 pub fn view_all(bounds: &Aabb, up: DVec3) -> Option<Camera> {
+    Camera::view_all(bounds, view_direction(up), up, VERTICAL_FOV)
+}
+
+/// The same of a scene, closer where its meshes do not fill the box around them. Unbounded objects
+/// do not count; `None` if there are no others.
+#[must_use]
+pub fn view_scene(scene: &Scene) -> Option<Camera> {
+    let points = scene.objects().iter().flat_map(|object| {
+        let bounds = object.shape.bounds();
+        let corners = bounds.corners().into_iter();
+        let corners = corners.take(if bounds.is_bounded() && !bounds.is_empty() {
+            8
+        } else {
+            0
+        });
+        let (corners, vertices) = match &object.shape {
+            Shape::Sheet(Sheet::Mesh {
+                mesh,
+                world_from_mesh,
+            }) => {
+                let place = |p| world_from_mesh.transform_point3(p);
+                (None, Some(mesh.used_positions().map(place)))
+            }
+            _ => (Some(corners), None),
+        };
+        corners
+            .into_iter()
+            .flatten()
+            .chain(vertices.into_iter().flatten())
+    });
+    let up = scene.settings().up;
+    Camera::view_points(points, view_direction(up), up, VERTICAL_FOV)
+}
+
+/// From the front, a little from the right and from above.
+fn view_direction(up: DVec3) -> DVec3 {
     let (front, right) = horizontal_axes(up);
-    let direction = -front * 1.0 - right * 0.55 - up.normalize_or(DVec3::Z) * 0.5;
-    Camera::view_all(bounds, direction, up, VERTICAL_FOV)
+    -front - right * 0.55 - up.normalize_or(DVec3::Z) * 0.5
 }
 
 /// Unit directions to the scene's front and to the right of someone who looks at the front.
@@ -71,11 +107,12 @@ pub fn dress(scene: Scene) -> Scene {
 /// Adds a camera that sees all of the scene, if it has none.
 #[must_use]
 pub fn add_camera(scene: Scene) -> Scene {
-    match view_all(&scene.bounds(), scene.settings().up) {
-        Some(camera) if scene.camera().is_none() => {
-            rebuilt(scene, |builder| builder.set_camera(camera))
-        }
-        _ => scene,
+    if scene.camera().is_some() {
+        return scene;
+    }
+    match view_scene(&scene) {
+        Some(camera) => rebuilt(scene, |builder| builder.set_camera(camera)),
+        None => scene,
     }
 }
 
@@ -101,18 +138,18 @@ fn add_lights(builder: &mut SceneBuilder, camera: &Camera) {
     };
     // From the left above, warm; from the right, bluish and weak; from behind, along the edges.
     add(
-        -right * 0.75 + up * 0.9 - forward,
-        DVec3::new(1.0, 0.96, 0.9),
+        -right * 0.9 + up * 1.0 - forward * 0.8,
+        DVec3::new(1.12, 1.06, 0.98),
         true,
     );
     add(
-        right + up * 0.15 - forward * 0.7,
-        DVec3::new(0.22, 0.25, 0.3),
+        right + up * 0.1 - forward * 0.6,
+        DVec3::new(0.17, 0.2, 0.25),
         false,
     );
     add(
-        right * 0.4 + up * 0.6 + forward,
-        DVec3::new(0.35, 0.37, 0.4),
+        right * 0.8 + up * 0.9 + forward,
+        DVec3::new(0.6, 0.64, 0.7),
         true,
     );
 }
@@ -125,6 +162,64 @@ fn backdrop(up: DVec3) -> Background {
     };
     Background::Gradient {
         axis: up.normalize_or(DVec3::Z),
-        map: vec![stop(0.2, 0.32, 0.33, 0.35), stop(0.8, 0.86, 0.88, 0.9)],
+        map: vec![stop(0.1, 0.06, 0.07, 0.09), stop(0.7, 0.42, 0.46, 0.52)],
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use octray_geometry::Solid;
+    use octray_scene::Object;
+
+    use super::*;
+
+    fn ball_at(center: DVec3, up: DVec3) -> Scene {
+        let mut builder = SceneBuilder::new();
+        builder.settings_mut().up = up;
+        let material = builder.add_material(default_material());
+        let ball = Solid::sphere(1.0).and_then(|s| s.translate(center));
+        builder.add_object(Object::solid("ball", ball.expect("valid"), material));
+        builder.build().expect("valid")
+    }
+
+    #[test]
+    fn a_bare_scene_is_seen_from_the_front_right_above_and_lit_from_the_camera_s_side() {
+        let center = DVec3::new(5.0, -3.0, 100.0);
+        for (up, front, right) in [
+            (DVec3::Z, DVec3::NEG_Y, DVec3::X),
+            (DVec3::Y, DVec3::Z, DVec3::X),
+        ] {
+            let scene = dress(ball_at(center, up));
+            let camera = scene.camera().expect("one");
+            let from = camera.eye - center;
+            assert!(from.dot(front) > from.dot(right) && from.dot(right) > 0.0);
+            assert!(from.dot(up) > 0.0);
+            assert!(camera.up.dot(up) > 0.0 && camera.right.dot(right) > 0.0);
+            assert_eq!(scene.lights().len(), 3);
+            let octray_scene::LightKind::Directional { direction } = scene.lights()[0].kind else {
+                panic!("the key light comes from infinity");
+            };
+            assert!(direction.dot(camera.forward) > 0.0 && direction.dot(up) < 0.0);
+        }
+    }
+
+    #[test]
+    fn what_a_scene_has_is_kept() {
+        let mut builder = ball_at(DVec3::ZERO, DVec3::Z).into_builder();
+        let camera = Camera::look_at(DVec3::X * 9.0, DVec3::ZERO, DVec3::Z, 1.0).expect("valid");
+        builder.set_camera(camera);
+        builder.add_light(Light::point(DVec3::X * 5.0, DVec3::ONE));
+        let scene = dress(builder.build().expect("valid"));
+        assert_eq!(scene.camera(), Some(&camera));
+        assert_eq!(scene.lights().len(), 1);
+        assert_eq!(*scene.background(), Background::default());
+    }
+
+    #[test]
+    fn an_empty_scene_stays_empty() {
+        let empty = SceneBuilder::new().build().expect("valid");
+        assert!(view_scene(&empty).is_none());
+        let dressed = dress(empty);
+        assert!(dressed.camera().is_none() && dressed.lights().is_empty());
     }
 }

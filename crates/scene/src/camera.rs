@@ -85,25 +85,50 @@ impl Camera {
     /// `None` for an empty or unbounded box, or where `up` points along `direction`.
     #[must_use]
     pub fn view_all(bounds: &Aabb, direction: DVec3, up: DVec3, vertical_fov: f64) -> Option<Self> {
-        /// Share of the picture that the box may take.
-        const FILL: f64 = 0.92;
         if bounds.is_empty() || !bounds.is_bounded() {
             return None;
         }
-        let center = bounds.center();
+        Self::view_points(bounds.corners(), direction, up, vertical_fov)
+    }
+
+    /// Like [`Camera::view_all`], of points: they fill the picture in one direction and lie in
+    /// its middle.
+    ///
+    /// `None` without points, or where `up` points along `direction`.
+    #[must_use]
+    pub fn view_points(
+        points: impl IntoIterator<Item = DVec3>,
+        direction: DVec3,
+        up: DVec3,
+        vertical_fov: f64,
+    ) -> Option<Self> {
+        /// Share of the picture that the points may take.
+        const FILL: f64 = 0.92;
         let forward = direction.try_normalize()?;
-        let mut camera = Self::look_at(center - forward, center, up, vertical_fov)?;
-        let half_height = FILL * libm::tan(0.5 * vertical_fov);
-        let [right, up] = [camera.right, camera.up].map(DVec3::normalize_or_zero);
-        // A corner at height h and depth z behind the centre is seen from the distance d if
-        // h <= (d + z) * half_height.
-        let needed = bounds.corners().map(|corner| {
-            let p = corner - center;
-            p.dot(right).abs().max(p.dot(up).abs()) / half_height - p.dot(forward)
-        });
-        let distance = needed.into_iter().fold(0.0, f64::max);
-        let distance = if distance > 0.0 { distance } else { 1.0 };
-        camera.eye = center - forward * distance;
+        let mut camera = Self::look_at(DVec3::ZERO, forward, up, vertical_fov)?;
+        let slope = FILL * libm::tan(0.5 * vertical_fov);
+        let sides = [camera.right, camera.up].map(DVec3::normalize_or_zero);
+        // A point at offset h and depth z is seen by an eye at (e, d) if
+        // |h - e| <= (z - d) * slope: e - d slope >= h - z slope and e + d slope <= h + z slope.
+        let mut low = [f64::NEG_INFINITY; 2];
+        let mut high = [f64::INFINITY; 2];
+        let mut nearest = f64::INFINITY;
+        for point in points {
+            let depth = point.dot(forward);
+            nearest = nearest.min(depth);
+            for (axis, side) in sides.iter().enumerate() {
+                let offset = point.dot(*side);
+                low[axis] = low[axis].max(offset - depth * slope);
+                high[axis] = high[axis].min(offset + depth * slope);
+            }
+        }
+        let mut depth = f64::min(high[0] - low[0], high[1] - low[1]) / (2.0 * slope);
+        if depth >= nearest {
+            // A single point, or points in one line of sight.
+            depth = nearest - 1.0;
+        }
+        let [x, y] = [0, 1].map(|axis| 0.5 * low[axis] + 0.5 * high[axis]);
+        camera.eye = sides[0] * x + sides[1] * y + forward * depth;
         camera.eye.is_finite().then_some(camera)
     }
 }

@@ -6,10 +6,10 @@
 //! of light that passes, tinted by the colour; lights without a colour have the strength
 //! `1 / sqrt(number of lights)`. Colours are display values: nothing is gamma corrected.
 //!
-//! Two numbers that the generators know are lost in NFF. The highlight's amount is Ks = 0.5 for
-//! balls, Kd = 0.3 (Ks = 0.6) for gears, Ks for teapot; the lesser of the two is taken (rings have 0.3
-//! instead of 0.2, mount 0.4 instead of 0.1, which shows little). Ambient light is given
-//! to matte surfaces only: what Kd leaves of 1.
+//! Two numbers that the generators have are lost in NFF. The amount of highlights is taken to be
+//! the lesser of `Ks` and `Kd`, which is right for balls, gears and teapot (rings have 0.3 instead
+//! of 0.2 and mount 0.4 instead of 0.1, which shows little). Ambient light goes to matte surfaces
+//! only: what `Kd` leaves of 1.
 
 use octray_math::DVec3;
 use octray_scene::{Color, Finish, Interior, Material, Pigment, Reflection};
