@@ -111,13 +111,11 @@ class _Run:
         self._check_arguments()
         try:
             code = self._render()
-        except RejectedSceneError as error:
-            self._say(f"octray: error: {error}")
-            self.report.add_messages(error.diagnostics)
-            code = error.code
         except FailureError as error:
             self._say(f"octray: error: {error}")
             self.report.error = str(error)
+            if isinstance(error, RejectedSceneError):
+                self.report.add_messages(error.diagnostics)
             code = error.code
         except KeyboardInterrupt:
             self._say("octray: interrupted; nothing was written")
