@@ -6,12 +6,9 @@ import os
 import subprocess
 import sys
 from pathlib import Path
-from typing import TYPE_CHECKING, Protocol
+from typing import Protocol
 
 import pytest
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator
 
 ROOT = Path(__file__).resolve().parent.parent
 COMMAND = [sys.executable, "-m", "octray"]
@@ -72,10 +69,10 @@ def cube(tmp_path: Path) -> Path:
 
 
 @pytest.fixture(scope="session")
-def corpus() -> Iterator[Path]:
+def corpus() -> Path:
     """The folder of other people's files."""
     given = os.environ.get("OCTRAY_CORPUS")
     folder = Path(given) if given else ROOT.parent / "shared" / "data"
     if not folder.is_dir():
         pytest.skip(f"there is no corpus at {folder}; OCTRAY_CORPUS names another place")
-    yield folder
+    return folder

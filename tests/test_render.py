@@ -7,7 +7,7 @@ import struct
 import threading
 import time
 import zlib
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pytest
@@ -51,7 +51,7 @@ def test_a_picture_has_the_same_bits_by_every_method() -> None:
         {"accel": "brute", "threads": 2},
         {"preview": lambda _image: None},
     ):
-        other = scene.render(size=(96, 64), **options)  # type: ignore[arg-type]
+        other = scene.render(size=(96, 64), **options)
         assert other.equals(first), options
         assert other.to_bytes("png") == first.to_bytes("png")
         assert other.to_bytes("exr") == first.to_bytes("exr")
@@ -70,7 +70,9 @@ def test_pixels_show_what_rays_meet() -> None:
     y, x = np.mgrid[0:40, 0:80] + 0.5
     inside = np.hypot(x - 40, y - 20) < 10
     np.testing.assert_array_equal(light[..., 0] > 0, inside)
-    np.testing.assert_array_equal(light[~inside], np.tile(np.float32([0, 0, 2]), ((~inside).sum(), 1)))
+    np.testing.assert_array_equal(
+        light[~inside], np.tile(np.array([0, 0, 2], np.float32), ((~inside).sum(), 1))
+    )
 
 
 def test_numpy_sees_a_picture_as_an_array() -> None:
@@ -92,7 +94,8 @@ def test_a_crop_is_a_part_of_the_whole() -> None:
 
 def png_chunks(data: bytes) -> dict[bytes, bytes]:
     assert data[:8] == b"\x89PNG\r\n\x1a\n"
-    chunks, at = {}, 8
+    chunks: dict[bytes, bytes] = {}
+    at = 8
     while at < len(data):
         (length,) = struct.unpack(">I", data[at : at + 4])
         kind, body = data[at + 4 : at + 8], data[at + 8 : at + 8 + length]
@@ -153,9 +156,9 @@ def test_empty_and_bare_scenes_have_pictures() -> None:
         ({"on_interrupt": "ignore"}, "on_interrupt must be"),
     ],
 )
-def test_what_cannot_be_rendered_is_refused(options: octray.RenderOptions, message: str) -> None:
+def test_what_cannot_be_rendered_is_refused(options: dict[str, Any], message: str) -> None:
     with pytest.raises(ValueError, match=message):
-        small_scene().render(**{"size": (64, 48), **options})  # type: ignore[typeddict-item]
+        small_scene().render(**{"size": (64, 48), **options})
 
 
 def test_progress_rises_to_one() -> None:

@@ -181,14 +181,16 @@ def test_what_is_no_solid_is_refused_with_a_reason(
 
 
 def test_expressions_that_would_never_end_are_refused_early() -> None:
-    solid = octray.sphere(1)
+    def repeated(times: int, change: Callable[[octray.Solid], octray.Solid]) -> octray.Solid:
+        solid = octray.sphere(1)
+        for _ in range(times):
+            solid = change(solid)
+        return solid
+
     with pytest.raises(ValueError, match="operands"):
-        for _ in range(64):
-            solid += solid.translate(x=1)
-    solid = octray.sphere(1)
+        repeated(64, lambda solid: solid + solid.translate(x=1))
     with pytest.raises(ValueError, match="nested"):
-        for _ in range(2000):
-            solid = ~solid
+        repeated(2000, lambda solid: ~solid)
 
 
 def test_long_chains_stay_flat() -> None:
