@@ -50,7 +50,7 @@ from octray._core import (
 if TYPE_CHECKING:
     from typing_extensions import Unpack
 
-    from octray._core import RenderOptions
+    from octray._options import RenderOptions
 
 __all__ = [
     "Camera",

@@ -1,24 +1,57 @@
-"""Types of the compiled module."""
+# Types of the compiled module; its docstrings are in the module itself.
 
 import os
-from collections.abc import Callable, Iterable, Sequence
-from typing import Any, Literal, Protocol, SupportsIndex, TypeAlias, TypedDict, final
+from collections.abc import Iterable, Sequence
+from typing import Any, Literal, Protocol, SupportsIndex, TypeAlias, final
 
 import numpy as np
 import numpy.typing as npt
-from typing_extensions import Unpack
+from typing_extensions import Unpack, disjoint_base
+
+from octray._options import Accel, RenderOptions, View
+
+__all__ = [
+    "Camera",
+    "Diagnostic",
+    "DirectionalLight",
+    "Hits",
+    "Image",
+    "Light",
+    "Material",
+    "PointLight",
+    "Scene",
+    "SceneError",
+    "Solid",
+    "SpotLight",
+    "__version__",
+    "box",
+    "check_request",
+    "cone",
+    "cpu_features",
+    "cylinder",
+    "default_threads",
+    "difference",
+    "empty",
+    "half_space",
+    "intersection",
+    "load",
+    "mesh_solid",
+    "polyhedron",
+    "sphere",
+    "torus",
+    "union",
+]
 
 __version__: str
 
 _Vector: TypeAlias = Iterable[float]
 _Color: TypeAlias = str | Iterable[float]
 _Path: TypeAlias = str | os.PathLike[str]
-_Bounds: TypeAlias = tuple[list[float], list[float]]
+_Point: TypeAlias = tuple[float, float, float]
+_Bounds: TypeAlias = tuple[_Point, _Point]
 _Floats: TypeAlias = npt.NDArray[np.float64]
 _Integers: TypeAlias = npt.NDArray[np.int64]
 _Booleans: TypeAlias = npt.NDArray[np.bool_]
-_Accel: TypeAlias = Literal["auto", "brute"]
-_View: TypeAlias = Literal["neutral", "standard", "raw"]
 
 class _Triangles(Protocol):
     @property
@@ -27,20 +60,6 @@ class _Triangles(Protocol):
     def faces(self) -> npt.ArrayLike: ...
 
 _Mesh: TypeAlias = _Path | tuple[npt.ArrayLike, npt.ArrayLike] | _Triangles
-
-class RenderOptions(TypedDict, total=False):
-    size: tuple[int, int] | None
-    spp: int
-    threads: int | None
-    accel: _Accel
-    crop: tuple[int, int, int, int] | None
-    view: _View | None
-    max_depth: int | None
-    threshold: float | None
-    seed: int
-    progress: bool | Callable[[float], object] | None
-    preview: Callable[[Image], object] | None
-    on_interrupt: Literal["raise", "return"]
 
 @final
 class Diagnostic:
@@ -84,7 +103,7 @@ def box(size: float | _Vector, center: bool = True) -> Solid: ...
 def sphere(r: float) -> Solid: ...
 def cylinder(r: float, h: float, center: bool = True) -> Solid: ...
 def cone(r1: float, r2: float, h: float, center: bool = True) -> Solid: ...
-def torus(R: float, r: float) -> Solid: ...
+def torus(R: float, r: float) -> Solid: ...  # noqa: N803 - what everyone calls it
 def half_space(normal: _Vector, d: float = 0.0) -> Solid: ...
 def polyhedron(vertices: npt.ArrayLike, faces: Iterable[Iterable[SupportsIndex]]) -> Solid: ...
 def mesh_solid(vertices: npt.ArrayLike, faces: npt.ArrayLike) -> Solid: ...
@@ -111,7 +130,7 @@ class Material:
         metallic: float = 0.0,
         reflection: float | _Color | None = None,
         fresnel: bool = False,
-        filter: float = 0.0,
+        filter: float = 0.0,  # noqa: A002 - the term of the model
         transmit: float = 0.0,
         ior: float = 1.0,
         absorption: float | _Color | None = None,
@@ -136,6 +155,7 @@ class Material:
     def __eq__(self, other: object, /) -> bool: ...
     def __ne__(self, other: object, /) -> bool: ...
 
+@disjoint_base
 class Light: ...
 
 @final
@@ -195,7 +215,7 @@ class Camera:
         height: float,
     ) -> Camera: ...
     @property
-    def eye(self) -> list[float]: ...
+    def eye(self) -> _Point: ...
     def __eq__(self, other: object, /) -> bool: ...
     def __ne__(self, other: object, /) -> bool: ...
 
@@ -216,9 +236,12 @@ class Image:
         self, dtype: npt.DTypeLike | None = None, copy: bool | None = None
     ) -> npt.NDArray[Any]: ...
     def to_bytes(
-        self, format: Literal["png", "exr"] = "png", *, view: _View | None = None
+        self,
+        format: Literal["png", "exr"] = "png",  # noqa: A002 - as Pillow calls it
+        *,
+        view: View | None = None,
     ) -> bytes: ...
-    def save(self, path: _Path, *, view: _View | None = None) -> None: ...
+    def save(self, path: _Path, *, view: View | None = None) -> None: ...
     def _repr_png_(self) -> bytes: ...
     def equals(self, other: Image) -> bool: ...
 
@@ -277,20 +300,20 @@ class Scene:
     @property
     def diagnostics(self) -> list[Diagnostic]: ...
     def describe(self) -> dict[str, Any]: ...
-    def prepare(self, *, accel: _Accel = "auto", threads: int | None = None) -> None: ...
+    def prepare(self, *, accel: Accel = "auto", threads: int | None = None) -> None: ...
     def render(self, **options: Unpack[RenderOptions]) -> Image: ...
     def cast_rays(
-        self, rays: npt.ArrayLike, *, accel: _Accel = "auto", threads: int | None = None
+        self, rays: npt.ArrayLike, *, accel: Accel = "auto", threads: int | None = None
     ) -> Hits: ...
     def count_intersections(
-        self, rays: npt.ArrayLike, *, accel: _Accel = "auto", threads: int | None = None
+        self, rays: npt.ArrayLike, *, accel: Accel = "auto", threads: int | None = None
     ) -> _Integers: ...
     def test_occlusions(
         self,
         rays: npt.ArrayLike,
         *,
         tfar: float = ...,
-        accel: _Accel = "auto",
+        accel: Accel = "auto",
         threads: int | None = None,
     ) -> _Booleans: ...
     def __len__(self) -> int: ...

@@ -5,7 +5,7 @@ use octray::scene::{self, Projection, SceneBuilder};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
-use crate::convert::vector;
+use crate::convert::{Triple, vector};
 
 /// Where a picture is taken from.
 #[pyclass(frozen, eq, module = "octray")]
@@ -97,8 +97,8 @@ impl Camera {
 
     /// Where the camera stands.
     #[getter]
-    fn eye(&self) -> [f64; 3] {
-        self.inner.eye.to_array()
+    fn eye(&self) -> Triple {
+        self.inner.eye.into()
     }
 
     fn __repr__(&self) -> String {

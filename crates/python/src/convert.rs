@@ -5,6 +5,9 @@ use octray::scene::srgb_to_linear;
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 
+/// A point or vector as Python gets it.
+pub(crate) type Triple = (f64, f64, f64);
+
 /// `ValueError` with the text of any error.
 pub(crate) fn value_error(error: impl std::fmt::Display) -> PyErr {
     PyValueError::new_err(error.to_string())

@@ -3,7 +3,7 @@
 use std::time::Duration;
 
 use octray::render::{RayCounts, Rendering};
-use octray::world::CellTreeStats;
+use octray::world::{CellTreeStats, WideTreeStats};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
@@ -28,6 +28,16 @@ fn cells<'py>(py: Python<'py>, stats: &CellTreeStats) -> PyResult<Bound<'py, PyD
     dict.set_item("bytes", stats.bytes)?;
     dict.set_item("stopped_by_depth", stats.stopped_by_depth)?;
     dict.set_item("stopped_by_memory", stats.stopped_by_memory)?;
+    Ok(dict)
+}
+
+fn wide<'py>(py: Python<'py>, stats: &WideTreeStats) -> PyResult<Bound<'py, PyDict>> {
+    let dict = PyDict::new(py);
+    dict.set_item("items", stats.items)?;
+    dict.set_item("nodes", stats.nodes)?;
+    dict.set_item("leaves", stats.leaves)?;
+    dict.set_item("depth", stats.depth)?;
+    dict.set_item("bytes", stats.bytes)?;
     Ok(dict)
 }
 
@@ -86,6 +96,9 @@ pub(crate) fn rendering(
     let trees = PyDict::new(py);
     let cell_tree = world.cells.as_ref().map(|s| cells(py, s)).transpose()?;
     trees.set_item("cells", cell_tree)?;
+    let wide_tree = world.triangle_tree.as_ref();
+    let wide_tree = wide_tree.map(|s| wide(py, s)).transpose()?;
+    trees.set_item("wide", wide_tree)?;
     report.set_item("trees", trees)?;
     let memory = PyDict::new(py);
     memory.set_item("peak_bytes", peak_bytes())?;

@@ -14,7 +14,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 use crate::camera::Camera;
-use crate::convert::{color, number_or_color, vector};
+use crate::convert::{Triple, color, number_or_color, vector};
 use crate::diagnostics::{Diagnostic, invalid_scene};
 use crate::image::Image;
 use crate::light::Light;
@@ -323,9 +323,9 @@ impl Scene {
 
     /// The box around all bounded objects as (lowest corner, highest corner), or `None`.
     #[getter]
-    fn bounds(&self) -> Option<([f64; 3], [f64; 3])> {
+    fn bounds(&self) -> Option<(Triple, Triple)> {
         let bounds = self.builder.so_far().bounds();
-        (!bounds.is_empty()).then(|| (bounds.min.to_array(), bounds.max.to_array()))
+        (!bounds.is_empty()).then(|| (bounds.min.into(), bounds.max.into()))
     }
 
     /// What the importer said about the file that this scene came from.

@@ -8,7 +8,7 @@ use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::PyTuple;
 
-use crate::convert::{affine, number_or_vector, value_error, vector};
+use crate::convert::{Triple, affine, number_or_vector, value_error, vector};
 use crate::mesh;
 
 /// An exact solid: a primitive, a closed mesh, or a set operation on solids.
@@ -161,9 +161,9 @@ impl Solid {
     /// A box around the solid as (lowest corner, highest corner): never too small, infinite where
     /// the solid is unbounded, `None` for an empty one.
     #[getter]
-    fn bounds(&self) -> Option<([f64; 3], [f64; 3])> {
+    fn bounds(&self) -> Option<(Triple, Triple)> {
         let bounds = self.inner.bounds();
-        (!bounds.is_empty()).then(|| (bounds.min.to_array(), bounds.max.to_array()))
+        (!bounds.is_empty()).then(|| (bounds.min.into(), bounds.max.into()))
     }
 
     fn __repr__(&self) -> String {

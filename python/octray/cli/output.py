@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 import sys
 from pathlib import Path
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING
 
 import click
 
@@ -13,8 +13,7 @@ from octray.cli.exits import FailureError
 
 if TYPE_CHECKING:
     from octray import Image
-
-View = Literal["neutral", "standard", "raw"]
+    from octray._options import View
 
 
 class Output:

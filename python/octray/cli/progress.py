@@ -10,9 +10,13 @@ from typing import TYPE_CHECKING, Literal
 if TYPE_CHECKING:
     from typing import TextIO
 
+    from typing_extensions import Self
+
 Style = Literal["auto", "bar", "plain", "none"]
 
 _WIDTH = 28
+#: Below this share the time that is left is anybody's guess.
+_GUESSABLE = 0.02
 
 
 def resolve(style: Style, stream: TextIO) -> Style:
@@ -24,14 +28,13 @@ def resolve(style: Style, stream: TextIO) -> Style:
 
 def duration(seconds: float) -> str:
     """Write a duration as one reads it: ``0.42 s``, ``12.3 s``, ``3 min 05 s``."""
-    if seconds < 10:
-        return f"{seconds:.2f} s"
-    if seconds < 100:
-        return f"{seconds:.1f} s"
+    for limit, digits in ((10, 2), (100, 1)):
+        if seconds < limit:
+            return f"{seconds:.{digits}f} s"
     minutes, rest = divmod(round(seconds), 60)
-    if minutes < 60:
-        return f"{minutes} min {rest:02d} s"
     hours, minutes = divmod(minutes, 60)
+    if hours == 0:
+        return f"{minutes} min {rest:02d} s"
     return f"{hours} h {minutes:02d} min"
 
 
@@ -48,7 +51,7 @@ class Progress:
         self._drawn = False
         self._color = self._style == "bar" and not os.environ.get("NO_COLOR")
 
-    def __enter__(self) -> Progress:
+    def __enter__(self) -> Self:
         """Start the clock."""
         self._start = time.monotonic()
         return self
@@ -75,7 +78,7 @@ class Progress:
 
     def _rest(self, fraction: float) -> str:
         spent = time.monotonic() - self._start
-        if spent < 1 or fraction < 0.02 or fraction >= 1:
+        if spent < 1 or fraction < _GUESSABLE or fraction >= 1:
             return ""
         return f", {duration(spent / fraction - spent)} left"
 

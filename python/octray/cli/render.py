@@ -16,6 +16,7 @@ from octray.cli.report import Report
 
 if TYPE_CHECKING:
     from octray import Image, Scene
+    from octray.cli.progress import Style
 
 
 @click.command("render", epilog="Example: octray render part.stl -o part.png --size 1920x1080")
@@ -104,20 +105,18 @@ class _Run:
         if options["output"] == "-" and options["preview"]:
             raise click.UsageError("--preview writes the picture several times: -o cannot be -")
         self.report = Report(path, options)
-        self.style = "none" if options["quiet"] else options["progress"]
+        self.style: Style = "none" if options["quiet"] else options["progress"]
 
     def run(self) -> int:
         """Render; say what happened; print the report whatever happens after the arguments."""
         self._check_arguments()
         try:
             code = self._render()
-        except RejectedSceneError as error:
-            self._say(f"octray: error: {error}")
-            self.report.add_messages(error.diagnostics)
-            code = error.code
         except FailureError as error:
             self._say(f"octray: error: {error}")
             self.report.error = str(error)
+            if isinstance(error, RejectedSceneError):
+                self.report.add_messages(error.diagnostics)
             code = error.code
         except KeyboardInterrupt:
             self._say("octray: interrupted; nothing was written")
@@ -218,7 +217,8 @@ class _Run:
         phases = self.report.phases
         rays = image.report["rays"]["total"]
         rate = rays / max(phases["render_s"], 1e-9)
-        unit, scale = ("M", 1e6) if rate >= 1e6 else ("k", 1e3)
+        mega = 1e6
+        unit, scale = ("M", mega) if rate >= mega else ("k", 1e3)
         return (
             f"{output.name}: {image.width}x{image.height} in {duration(sum(phases.values()))}"
             f" (import {duration(phases['import_s'])}, build {duration(phases['build_s'])},"

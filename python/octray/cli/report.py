@@ -67,7 +67,9 @@ class Report:
         """Give the same for people, as ``--verbose`` shows it."""
         rendering = self._rendering
         rays = ", ".join(f"{count} {kind}" for kind, count in rendering["rays"].items())
-        tests = ", ".join(f"{number:.2f} {kind}" for kind, number in rendering["tests_per_ray"].items())
+        tests = ", ".join(
+            f"{number:.2f} {kind}" for kind, number in rendering["tests_per_ray"].items()
+        )
         lines = [f"  rays {rays}", f"  tests per ray {tests}", f"  threads {rendering['threads']}"]
         for name, tree in rendering["trees"].items():
             if tree is not None:

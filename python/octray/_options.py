@@ -1,0 +1,32 @@
+"""The types of arguments that several functions share."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Literal, TypedDict
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from octray._core import Image
+
+#: Octrees, or every surface for every ray. The answers are the same bits.
+Accel = Literal["auto", "brute"]
+#: How light becomes the colours of a PNG.
+View = Literal["neutral", "standard", "raw"]
+
+
+class RenderOptions(TypedDict, total=False):
+    """What ``Scene.render`` can be told, all by keyword."""
+
+    size: tuple[int, int] | None
+    spp: int
+    threads: int | None
+    accel: Accel
+    crop: tuple[int, int, int, int] | None
+    view: View | None
+    max_depth: int | None
+    threshold: float | None
+    seed: int
+    progress: bool | Callable[[float], object] | None
+    preview: Callable[[Image], object] | None
+    on_interrupt: Literal["raise", "return"]
