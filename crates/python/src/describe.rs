@@ -158,9 +158,9 @@ pub(crate) fn background(background: &Background, up: DVec3) -> Vec<[f64; 3]> {
         Background::Uniform(rgb) => vec![rgb.to_array()],
         Background::Gradient { map, .. } => map.iter().map(|s| s.color.rgb.to_array()).collect(),
         // What is seen straight up, level and straight down.
-        sky @ Background::Sky { .. } => {
-            [up, up.any_orthonormal_vector(), -up].map(|d| sky.at(d).to_array()).to_vec()
-        }
+        sky @ Background::Sky { .. } => [up, up.any_orthonormal_vector(), -up]
+            .map(|d| sky.at(d).to_array())
+            .to_vec(),
     }
 }
 

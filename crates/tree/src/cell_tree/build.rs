@@ -54,6 +54,8 @@ impl Default for Criteria {
 /// How often in a row a cell may be divided without gain, and how many parts it must have.
 const FUTILE_LIMIT: u8 = 3;
 const FUTILE_PARTS: u32 = 8;
+/// The children of a cell of more parts are worked on in parallel.
+const MANY_PARTS: u32 = 1000;
 /// Passing an empty cell costs this share of entering an occupied one.
 const EMPTY_SHARE: f64 = 0.2;
 
@@ -167,21 +169,28 @@ fn divide<S: Subdivide>(
         return None;
     };
     let margin = root.size().x * CellTree::CONTENT_MARGIN;
-    let mut expected = 0.5 * criteria.visit_cost;
-    let mut children = Vec::with_capacity(8);
-    for octant in 0..8 {
+    let child = |octant: u32| {
         let key = cell.key.child(octant);
         let content = subdivide.restrict(&cell.content, &key.bounds(root).inflated(margin));
-        expected += 0.25
-            * match subdivide.describe(&content) {
-                Cell::Empty(_) => EMPTY_SHARE * criteria.visit_cost,
-                Cell::Occupied { cost, .. } => criteria.visit_cost + cost,
-            };
-        children.push(Frontier {
+        Frontier {
             key,
             content,
             futile: 0,
-        });
+        }
+    };
+    // The upper levels have fewer cells than there are threads.
+    let mut children: Vec<_> = if parts > MANY_PARTS {
+        (0..8).into_par_iter().map(child).collect()
+    } else {
+        (0..8).map(child).collect()
+    };
+    let mut expected = 0.5 * criteria.visit_cost;
+    for child in &children {
+        expected += 0.25
+            * match subdivide.describe(&child.content) {
+                Cell::Empty(_) => EMPTY_SHARE * criteria.visit_cost,
+                Cell::Occupied { cost, .. } => criteria.visit_cost + cost,
+            };
     }
     if expected < criteria.visit_cost + cost {
         return Some(children);

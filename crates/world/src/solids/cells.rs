@@ -101,6 +101,8 @@ pub(super) struct Cells<'a> {
     pub(super) surfaces: &'a [Surface],
     pub(super) meshes: &'a [MeshSurface],
     pub(super) ranked: &'a [Ranked],
+    /// A box around each object, by rank.
+    pub(super) bounds: &'a [Aabb],
 }
 
 impl Cells<'_> {
@@ -138,21 +140,22 @@ impl Subdivide for Cells<'_> {
     type Content = Content;
 
     fn restrict(&self, parent: &Content, cell: &Aabb) -> Content {
-        let sides: Vec<Side> = parent
-            .surfaces
-            .iter()
-            .map(|&s| self.classify(s, cell))
-            .collect();
+        // Decided when first asked for: most surfaces belong to objects that are far away.
+        let mut sides: Vec<Option<Side>> = vec![None; parent.surfaces.len()];
         let mut truth = |face: FaceId| {
             let face = &self.faces[face.0 as usize];
             let at = parent.surfaces.binary_search(&face.surface.0).ok()?;
-            truth_on(sides[at], face.inside_is_positive)
+            let side = *sides[at].get_or_insert_with(|| self.classify(face.surface.0, cell));
+            truth_on(side, face.inside_is_positive)
         };
         let mut content = Content {
             base: parent.base,
             ..Content::default()
         };
         for object in &parent.objects {
+            if !self.bounds[object.rank as usize].overlaps(cell) {
+                continue;
+            }
             let is_shell = self.ranked[object.rank as usize].shell;
             let (expression, clip) = (parent.expression(object), parent.clip(object));
             content.add(object.rank, is_shell, expression, clip, &mut truth);

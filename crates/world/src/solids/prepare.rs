@@ -120,11 +120,13 @@ impl Solids {
         let mut tree = None;
         let mut outer = root;
         if let Some(criteria) = criteria.filter(|_| !bounds.is_empty()) {
+            let object_bounds: Vec<Aabb> = candidates.iter().map(|c| c.bounds).collect();
             let cells = Cells {
                 faces: &faces,
                 surfaces: &surfaces,
                 meshes: &meshes,
                 ranked: &ranked,
+                bounds: &object_bounds,
             };
             let cube = cell_tree::enclosing_cube(&bounds);
             let (built, leaves) = CellTree::build(cube, outer, &cells, criteria);
