@@ -17,6 +17,9 @@ Style = Literal["auto", "bar", "plain", "none"]
 _WIDTH = 28
 #: Below this share the time that is left is anybody's guess.
 _GUESSABLE = 0.02
+_ALL = 10
+#: Seconds between plain lines, so that a quick picture does not fill a log.
+_LINE_PAUSE = 0.2
 
 
 def resolve(style: Style, stream: TextIO) -> Style:
@@ -48,6 +51,7 @@ class Progress:
         self._style = resolve(style, self._stream)
         self._start = time.monotonic()
         self._tenth = 0
+        self._last = self._start
         self._drawn = False
         self._color = self._style == "bar" and not os.environ.get("NO_COLOR")
 
@@ -97,7 +101,9 @@ class Progress:
 
     def _line(self, fraction: float) -> None:
         tenth = int(fraction * 10 + 1e-9)
-        if tenth > self._tenth:
+        now = time.monotonic()
+        if tenth > self._tenth and (tenth == _ALL or now - self._last > _LINE_PAUSE):
             self._tenth = tenth
+            self._last = now
             self._stream.write(f"{self._label} {tenth * 10}%{self._rest(fraction)}\n")
             self._stream.flush()
