@@ -1,7 +1,7 @@
 //! `finish { ... }` and `interior { ... }`.
 
 use octray_math::DVec3;
-use octray_scene::{Finish, Interior, Reflection};
+use octray_scene::{Fade, Finish, Interior, Reflection};
 
 use super::lexer::Kind;
 use super::reader::{Parsed, Reader};
@@ -26,10 +26,7 @@ impl Reader<'_> {
     fn share(&mut self) -> Parsed<DVec3> {
         if self.eat_word("albedo") {
             // Energy-normalised amounts are taken as plain ones.
-            self.warn(
-                self.last,
-                "`albedo` is not supported: the plain amount is taken",
-            );
+            self.warn(self.last, "`albedo` is not supported: the plain amount is taken");
         }
         Ok(self.color()?.rgb)
     }
@@ -49,19 +46,13 @@ impl Reader<'_> {
             "emission" => f.emission = self.share()?,
             "diffuse" => {
                 if self.eat_word("albedo") {
-                    self.warn(
-                        token.span,
-                        "`albedo` is not supported: the plain amount is taken",
-                    );
+                    self.warn(token.span, "`albedo` is not supported: the plain amount is taken");
                 }
                 f.diffuse = self.float()?;
                 if self.at(",") {
                     self.next();
                     self.float()?;
-                    self.warn(
-                        token.span,
-                        "light through a surface from behind is not supported",
-                    );
+                    self.warn(token.span, "light through a surface from behind is not supported");
                 }
             }
             "brilliance" => f.brilliance = self.float()?,
@@ -73,10 +64,7 @@ impl Reader<'_> {
                 if value > 0.0 {
                     f.roughness = value;
                 } else {
-                    self.warn(
-                        token.span.to(self.last),
-                        "a roughness must be greater than 0",
-                    );
+                    self.warn(token.span.to(self.last), "a roughness must be greater than 0");
                 }
             }
             "metallic" => f.metallic = self.optional_number()?,
@@ -119,10 +107,7 @@ impl Reader<'_> {
 
     fn amount(&mut self) -> Parsed<f64> {
         if self.eat_word("albedo") {
-            self.warn(
-                self.last,
-                "`albedo` is not supported: the plain amount is taken",
-            );
+            self.warn(self.last, "`albedo` is not supported: the plain amount is taken");
         }
         self.float()
     }
@@ -184,6 +169,12 @@ impl Reader<'_> {
     /// `{ ... }` behind `interior`.
     pub(super) fn interior(&mut self) -> Parsed<Interior> {
         let mut made = Interior::default();
+        // Both numbers must be given for it to mean anything.
+        let mut fade = Fade {
+            half_distance: 0.0,
+            power: 0.0,
+            color: DVec3::ZERO,
+        };
         self.block("interior", |r| {
             let token = r.peek();
             let word = r.peek_word();
@@ -197,17 +188,23 @@ impl Reader<'_> {
                         r.warn(token.span, "an index of refraction must be greater than 0");
                     }
                 }
-                Some(
-                    name @ ("caustics" | "dispersion" | "dispersion_samples" | "fade_distance"
-                    | "fade_power" | "fade_color" | "fade_colour"),
-                ) => {
+                Some(name @ ("caustics" | "dispersion" | "dispersion_samples")) => {
                     let name = name.to_owned();
                     r.next();
-                    r.color()?;
-                    r.warn(
-                        token.span,
-                        format!("`{name}` of an interior is not supported"),
-                    );
+                    r.float()?;
+                    r.warn(token.span, format!("`{name}` of an interior is not supported"));
+                }
+                Some("fade_distance") => {
+                    r.next();
+                    fade.half_distance = r.float()?;
+                }
+                Some("fade_power") => {
+                    r.next();
+                    fade.power = r.float()?;
+                }
+                Some("fade_color" | "fade_colour") => {
+                    r.next();
+                    fade.color = r.color()?.rgb;
                 }
                 Some("media") => {
                     r.next();
@@ -215,7 +212,10 @@ impl Reader<'_> {
                     r.skip_block()?;
                 }
                 _ => match r.reference()? {
-                    Value::Interior(interior) => made = interior,
+                    Value::Interior(interior) => {
+                        made = interior;
+                        fade = interior.fade.unwrap_or(fade);
+                    }
                     Value::Unknown | Value::Ignored(_) => {}
                     other => {
                         let message = format!("expected an interior, found {}", other.describe());
@@ -225,31 +225,14 @@ impl Reader<'_> {
             }
             Ok(())
         })?;
+        made.fade = (fade.half_distance > 0.0 && fade.power > 0.0).then_some(fade);
         Ok(made)
     }
 }
 
 const FINISH_WORDS: [&str; 22] = [
-    "ambient",
-    "emission",
-    "diffuse",
-    "brilliance",
-    "phong",
-    "phong_size",
-    "specular",
-    "roughness",
-    "metallic",
-    "reflection",
-    "reflection_exponent",
-    "refraction",
-    "ior",
-    "caustics",
-    "fade_distance",
-    "fade_power",
-    "crand",
-    "dispersion",
-    "conserve_energy",
-    "irid",
-    "subsurface",
-    "use_alpha",
+    "ambient", "emission", "diffuse", "brilliance", "phong", "phong_size", "specular",
+    "roughness", "metallic", "reflection", "reflection_exponent", "refraction", "ior", "caustics",
+    "fade_distance", "fade_power", "crand", "dispersion", "conserve_energy", "irid",
+    "subsurface", "use_alpha",
 ];
