@@ -26,7 +26,10 @@ impl Reader<'_> {
     fn share(&mut self) -> Parsed<DVec3> {
         if self.eat_word("albedo") {
             // Energy-normalised amounts are taken as plain ones.
-            self.warn(self.last, "`albedo` is not supported: the plain amount is taken");
+            self.warn(
+                self.last,
+                "`albedo` is not supported: the plain amount is taken",
+            );
         }
         Ok(self.color()?.rgb)
     }
@@ -46,13 +49,19 @@ impl Reader<'_> {
             "emission" => f.emission = self.share()?,
             "diffuse" => {
                 if self.eat_word("albedo") {
-                    self.warn(token.span, "`albedo` is not supported: the plain amount is taken");
+                    self.warn(
+                        token.span,
+                        "`albedo` is not supported: the plain amount is taken",
+                    );
                 }
                 f.diffuse = self.float()?;
                 if self.at(",") {
                     self.next();
                     self.float()?;
-                    self.warn(token.span, "light through a surface from behind is not supported");
+                    self.warn(
+                        token.span,
+                        "light through a surface from behind is not supported",
+                    );
                 }
             }
             "brilliance" => f.brilliance = self.float()?,
@@ -64,7 +73,10 @@ impl Reader<'_> {
                 if value > 0.0 {
                     f.roughness = value;
                 } else {
-                    self.warn(token.span.to(self.last), "a roughness must be greater than 0");
+                    self.warn(
+                        token.span.to(self.last),
+                        "a roughness must be greater than 0",
+                    );
                 }
             }
             "metallic" => f.metallic = self.optional_number()?,
@@ -107,7 +119,10 @@ impl Reader<'_> {
 
     fn amount(&mut self) -> Parsed<f64> {
         if self.eat_word("albedo") {
-            self.warn(self.last, "`albedo` is not supported: the plain amount is taken");
+            self.warn(
+                self.last,
+                "`albedo` is not supported: the plain amount is taken",
+            );
         }
         self.float()
     }
@@ -192,7 +207,10 @@ impl Reader<'_> {
                     let name = name.to_owned();
                     r.next();
                     r.float()?;
-                    r.warn(token.span, format!("`{name}` of an interior is not supported"));
+                    r.warn(
+                        token.span,
+                        format!("`{name}` of an interior is not supported"),
+                    );
                 }
                 Some("fade_distance") => {
                     r.next();
@@ -231,8 +249,26 @@ impl Reader<'_> {
 }
 
 const FINISH_WORDS: [&str; 22] = [
-    "ambient", "emission", "diffuse", "brilliance", "phong", "phong_size", "specular",
-    "roughness", "metallic", "reflection", "reflection_exponent", "refraction", "ior", "caustics",
-    "fade_distance", "fade_power", "crand", "dispersion", "conserve_energy", "irid",
-    "subsurface", "use_alpha",
+    "ambient",
+    "emission",
+    "diffuse",
+    "brilliance",
+    "phong",
+    "phong_size",
+    "specular",
+    "roughness",
+    "metallic",
+    "reflection",
+    "reflection_exponent",
+    "refraction",
+    "ior",
+    "caustics",
+    "fade_distance",
+    "fade_power",
+    "crand",
+    "dispersion",
+    "conserve_energy",
+    "irid",
+    "subsurface",
+    "use_alpha",
 ];
