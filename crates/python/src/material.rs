@@ -127,6 +127,7 @@ impl Material {
                 absorption: or(absorption, DVec3::ZERO, |c| {
                     number_or_color("absorption", c)
                 })?,
+                ..Interior::default()
             },
         })
     }

@@ -375,6 +375,11 @@ fn check_material(material: &Material, errors: &mut Vec<SceneError>) {
     );
     numbers.positive("index of refraction", material.interior.ior);
     numbers.finite("absorption", &material.interior.absorption.to_array());
+    if let Some(fade) = &material.interior.fade {
+        numbers.positive("fade distance", fade.half_distance);
+        numbers.positive("fade power", fade.power);
+        numbers.finite("fade colour", &fade.color.to_array());
+    }
     check_pigment(&material.pigment, &mut numbers);
 }
 

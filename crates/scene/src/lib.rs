@@ -14,7 +14,7 @@ pub use builder::{Scene, SceneBuilder, SceneError, Settings};
 pub use camera::{Camera, Projection};
 pub use light::{Falloff, Light, LightKind};
 pub use material::{
-    Background, Color, ColorStop, Finish, Interior, Material, Pattern, Pigment, Reflection,
+    Background, Color, ColorStop, Fade, Finish, Interior, Material, Pattern, Pigment, Reflection,
 };
 pub use object::{Object, ObjectId, Shape};
 pub use srgb::{linear_to_srgb, srgb_to_linear};

@@ -277,6 +277,8 @@ pub struct Interior {
     pub ior: f64,
     /// Absorption: light is multiplied by `exp(-absorption * distance)`, per unit of length.
     pub absorption: DVec3,
+    /// A weakening that is not exponential, besides the absorption.
+    pub fade: Option<Fade>,
 }
 
 impl Default for Interior {
@@ -284,7 +286,34 @@ impl Default for Interior {
         Self {
             ior: 1.0,
             absorption: DVec3::ZERO,
+            fade: None,
         }
+    }
+}
+
+/// How light weakens on its way through an inside in POV-Ray: it is multiplied by
+/// `color + (1 - color) / (1 + (distance / half_distance)^power)` on each straight piece of way.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Fade {
+    /// Where half of what can be lost is lost; positive.
+    pub half_distance: f64,
+    /// Positive; from 1000 on the law is `color + (1 - color) exp(-distance / half_distance)`.
+    pub power: f64,
+    /// What is left after any distance.
+    pub color: DVec3,
+}
+
+impl Fade {
+    /// What is left of light after `distance`, possibly infinite.
+    #[must_use]
+    pub fn transmission(&self, distance: f64) -> DVec3 {
+        let s = distance / self.half_distance;
+        let left = if self.power >= 1000.0 {
+            libm::exp(-s)
+        } else {
+            1.0 / (1.0 + libm::pow(s, self.power))
+        };
+        self.color + (DVec3::ONE - self.color) * left
     }
 }
 
@@ -456,6 +485,18 @@ mod tests {
         assert_eq!(color_at(&map, 0.0).rgb.x, 0.25);
         assert_eq!(color_at(&map, 0.5).rgb.x, 0.5);
         assert_eq!(color_at(&map, 1.0).rgb.x, 0.75);
+    }
+
+    #[test]
+    fn a_fade_loses_half_at_its_distance_and_all_in_the_end() {
+        let fade = Fade {
+            half_distance: 2.0,
+            power: 3.0,
+            color: DVec3::new(0.0, 0.5, 1.0),
+        };
+        assert_eq!(fade.transmission(0.0), DVec3::ONE);
+        assert_eq!(fade.transmission(2.0), DVec3::new(0.5, 0.75, 1.0));
+        assert_eq!(fade.transmission(f64::INFINITY), fade.color);
     }
 
     #[test]

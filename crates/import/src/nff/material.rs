@@ -64,7 +64,7 @@ impl Fill {
                 } else {
                     1.0
                 },
-                absorption: DVec3::ZERO,
+                ..Interior::default()
             },
         }
     }

@@ -213,7 +213,7 @@ impl Entry {
             finish,
             interior: Interior {
                 ior: if is_glass || illum == 5 { ior } else { 1.0 },
-                absorption: DVec3::ZERO,
+                ..Interior::default()
             },
         }
     }

@@ -152,7 +152,7 @@ impl CameraState {
                 .try_normalize()
                 .ok_or("the camera looks at the point where it stands")?;
             // The lengths and the handedness are kept; the directions follow from the sky.
-            let left_handed = up.cross(direction).dot(right) >= 0.0;
+            let left_handed = up.cross(direction).dot(right) > 0.0;
             let side = self
                 .sky
                 .cross(view)

@@ -30,16 +30,10 @@ enum FlowKind {
 const TOLERANCE: f64 = 1e-10;
 
 impl Reader<'_> {
-    /// Whether this directive, met in the value of a `#declare`, must wait until it is stored.
+    /// Whether this directive, met in the value of a `#declare`, must wait until it is stored:
+    /// any, except a branch where an operand has to come.
     pub(super) fn ends_value(&self, name: &str) -> bool {
-        match name {
-            "if" | "ifdef" | "ifndef" | "else" | "elseif" | "switch" | "case" | "range" => false,
-            "end" => self
-                .flow
-                .last()
-                .is_some_and(|flow| matches!(flow.kind, FlowKind::While(_) | FlowKind::For { .. })),
-            _ => true,
-        }
+        !(self.after_operator && matches!(name, "if" | "ifdef" | "ifndef" | "switch"))
     }
 
     /// Runs a directive whose name has been read.

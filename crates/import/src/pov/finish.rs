@@ -1,7 +1,7 @@
 //! `finish { ... }` and `interior { ... }`.
 
 use octray_math::DVec3;
-use octray_scene::{Finish, Interior, Reflection};
+use octray_scene::{Fade, Finish, Interior, Reflection};
 
 use super::lexer::Kind;
 use super::reader::{Parsed, Reader};
@@ -184,6 +184,12 @@ impl Reader<'_> {
     /// `{ ... }` behind `interior`.
     pub(super) fn interior(&mut self) -> Parsed<Interior> {
         let mut made = Interior::default();
+        // Both numbers must be given for it to mean anything.
+        let mut fade = Fade {
+            half_distance: 0.0,
+            power: 0.0,
+            color: DVec3::ZERO,
+        };
         self.block("interior", |r| {
             let token = r.peek();
             let word = r.peek_word();
@@ -197,17 +203,26 @@ impl Reader<'_> {
                         r.warn(token.span, "an index of refraction must be greater than 0");
                     }
                 }
-                Some(
-                    name @ ("caustics" | "dispersion" | "dispersion_samples" | "fade_distance"
-                    | "fade_power" | "fade_color" | "fade_colour"),
-                ) => {
+                Some(name @ ("caustics" | "dispersion" | "dispersion_samples")) => {
                     let name = name.to_owned();
                     r.next();
-                    r.color()?;
+                    r.float()?;
                     r.warn(
                         token.span,
                         format!("`{name}` of an interior is not supported"),
                     );
+                }
+                Some("fade_distance") => {
+                    r.next();
+                    fade.half_distance = r.float()?;
+                }
+                Some("fade_power") => {
+                    r.next();
+                    fade.power = r.float()?;
+                }
+                Some("fade_color" | "fade_colour") => {
+                    r.next();
+                    fade.color = r.color()?.rgb;
                 }
                 Some("media") => {
                     r.next();
@@ -215,7 +230,10 @@ impl Reader<'_> {
                     r.skip_block()?;
                 }
                 _ => match r.reference()? {
-                    Value::Interior(interior) => made = interior,
+                    Value::Interior(interior) => {
+                        made = interior;
+                        fade = interior.fade.unwrap_or(fade);
+                    }
                     Value::Unknown | Value::Ignored(_) => {}
                     other => {
                         let message = format!("expected an interior, found {}", other.describe());
@@ -225,6 +243,7 @@ impl Reader<'_> {
             }
             Ok(())
         })?;
+        made.fade = (fade.half_distance > 0.0 && fade.power > 0.0).then_some(fade);
         Ok(made)
     }
 }

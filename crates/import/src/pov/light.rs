@@ -28,12 +28,11 @@ impl Reader<'_> {
     /// What stands in the braces behind `light_source`, up to its modifiers: a name or a place
     /// and a colour.
     pub(super) fn light_head(&mut self) -> Parsed<Option<ObjectDef>> {
-        if let Some(word) = self.peek_word() {
-            if matches!(self.scopes.get(&word), Some(Value::Object(_))) {
-                if let Value::Object(object) = self.reference()? {
-                    return Ok(Some((*object).clone()));
-                }
-            }
+        if let Some(word) = self.peek_word()
+            && matches!(self.scopes.get(&word), Some(Value::Object(_)))
+            && let Value::Object(object) = self.reference()?
+        {
+            return Ok(Some((*object).clone()));
         }
         let position = self.vector()?;
         self.comma();

@@ -370,10 +370,10 @@ impl<'a> Lowering<'a> {
         let layer = shown_layer(&context.texture.layers);
         let inverse = context.texture_world.inverse();
         let mut interior = context.interior.unwrap_or_default();
-        if let (None, Some(ior)) = (context.interior, layer.finish.ior) {
-            if ior > 0.0 {
-                interior.ior = ior;
-            }
+        if let (None, Some(ior)) = (context.interior, layer.finish.ior)
+            && ior > 0.0
+        {
+            interior.ior = ior;
         }
         let name = context.texture.name.as_deref();
         let material = Material {

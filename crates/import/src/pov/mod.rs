@@ -66,10 +66,10 @@ pub fn import(path: &Path, bytes: Vec<u8>, files: &dyn FileSystem, options: &Opt
 
 fn finish(mut reader: Reader<'_>) -> Imported {
     let mut builder = SceneBuilder::new();
-    if let Some((state, span)) = reader.scene.camera {
-        if let Some(camera) = reader.made_camera(&state, span) {
-            builder.set_camera(camera);
-        }
+    if let Some((state, span)) = reader.scene.camera
+        && let Some(camera) = reader.made_camera(&state, span)
+    {
+        builder.set_camera(camera);
     }
     let mut diagnostics = reader.diagnostics;
     let scene = reader.scene;
@@ -100,20 +100,7 @@ fn finish(mut reader: Reader<'_>) -> Imported {
         }
         lowering.finish();
     }
-    let scene = if diagnostics.has_errors() {
-        None
-    } else {
-        match builder.build() {
-            Ok(scene) => Some(scene),
-            Err(errors) => {
-                for error in errors {
-                    diagnostics.error(None, error.to_string());
-                }
-                None
-            }
-        }
-    };
-    Imported { scene, diagnostics }
+    Imported::finish(builder, diagnostics)
 }
 
 /// Blocks that are read over, and what they are called in messages.

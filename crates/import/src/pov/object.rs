@@ -228,13 +228,11 @@ impl Reader<'_> {
         let Some(word) = token.word().cloned() else {
             return self.unexpected("an object");
         };
-        if let Geometry::Operation(_, children) = &mut object.geometry {
-            if OBJECTS.contains(&&*word) {
-                if let Some(child) = self.object()? {
-                    children.push(child);
-                }
-                return Ok(());
-            }
+        if let Geometry::Operation(_, children) = &mut object.geometry
+            && OBJECTS.contains(&&*word)
+        {
+            children.extend(self.object()?);
+            return Ok(());
         }
         match &*word {
             "texture" => {

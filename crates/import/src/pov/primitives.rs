@@ -198,18 +198,14 @@ pub(super) fn conical(
     } else {
         let slope = (radius_b - radius_a) / height;
         let apex = -radius_a / slope;
+        let margin = height / 64.0;
         let (low, high) = if slope > 0.0 {
-            (apex, height * 2.0)
+            (apex.max(-margin), height + margin)
         } else {
-            (-height, apex)
+            (-margin, apex.min(height + margin))
         };
         let radius_at = |z: f64| (radius_a + slope * z).max(0.0);
-        let (r_low, r_high) = if slope > 0.0 {
-            (0.0, radius_at(high))
-        } else {
-            (radius_at(low), 0.0)
-        };
-        Solid::cone(r_low, r_high, low, high)?
+        Solid::cone(radius_at(low), radius_at(high), low, high)?
     };
     let slab = Solid::intersection([
         Solid::half_space(DVec3::Z, height)?,

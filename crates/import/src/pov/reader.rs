@@ -63,6 +63,8 @@ pub(super) struct Reader<'a> {
     errors: usize,
     reported: BTreeSet<(u32, usize, String)>,
     pub(super) last: Span,
+    /// The last token taken was a sign that something must follow.
+    pub(super) after_operator: bool,
     /// The language version in force.
     pub(super) version: f64,
     pub(super) default_texture: Rc<Texture>,
@@ -102,6 +104,7 @@ impl<'a> Reader<'a> {
             errors: 0,
             reported: BTreeSet::new(),
             last: Span::new(SourceId(0), 0..0),
+            after_operator: false,
             version: 3.62,
             default_texture: Rc::new(Texture::default()),
             random: Vec::new(),
@@ -263,7 +266,7 @@ impl<'a> Reader<'a> {
                     let name = Rc::clone(name);
                     let ran = self.nested(|r| r.directive(&name, token.span));
                     if ran.is_err() {
-                        self.ahead = None;
+                        self.skip_remains(";");
                     }
                 }
                 Kind::Bad(what) => {
@@ -275,13 +278,33 @@ impl<'a> Reader<'a> {
                         let (found, name) = (Rc::clone(found), Rc::clone(name));
                         let called = self.nested(|r| r.call_macro(&name, &found, token.span));
                         if called.is_err() {
-                            self.ahead = None;
+                            self.skip_remains(")");
                         }
                     } else {
                         self.ahead = Some(token);
                     }
                 }
                 _ => self.ahead = Some(token),
+            }
+        }
+    }
+
+    /// Drops what a directive or macro call that went wrong has left: up to the sign that ends it,
+    /// or to where something else begins.
+    fn skip_remains(&mut self, last: &str) {
+        self.ahead = None;
+        let Some(frame) = self.frames.last_mut() else {
+            return;
+        };
+        while frame.at < frame.end {
+            match &frame.tokens[frame.at].kind {
+                Kind::Sign(sign) if *sign == last => {
+                    frame.at += 1;
+                    return;
+                }
+                Kind::Directive(_) | Kind::End | Kind::Sign("}") => return,
+                Kind::Word(word) if super::STATEMENTS.contains(&&**word) => return,
+                _ => frame.at += 1,
             }
         }
     }
@@ -308,6 +331,10 @@ impl<'a> Reader<'a> {
             _ => {}
         }
         self.last = token.span;
+        self.after_operator = match token.kind {
+            Kind::Sign(sign) => !matches!(sign, ")" | "]" | "}" | ">"),
+            _ => false,
+        };
         token
     }
 

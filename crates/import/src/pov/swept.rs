@@ -125,12 +125,10 @@ impl Reader<'_> {
         let pieces = self.cut(&points, span)?;
         self.eat_word("open");
         let heights = [a.min(b), a.max(b)];
-        let solids: Result<Vec<Solid>, ShapeError> = pieces
+        let solids = pieces
             .iter()
-            .flat_map(|piece| prism_piece(piece, heights, conic))
-            .collect();
-        let made = solids.map(|solids| Geometry::Solid(Solid::union(solids)));
-        Ok(self.usable("prism", span, made))
+            .flat_map(|piece| prism_piece(piece, heights, conic));
+        Ok(self.joined("prism", span, solids))
     }
 
     /// `[linear_spline] count, <x, y>, ...`: turned about the y axis.
@@ -159,9 +157,30 @@ impl Reader<'_> {
             return Ok(self.usable("lathe", span, open_lathe(&points)));
         }
         let pieces = self.cut(&points, span)?;
-        let solids: Result<Vec<Solid>, ShapeError> = pieces.iter().map(lathe_piece).collect();
-        let made = solids.map(|solids| Geometry::Solid(Solid::union(solids)));
-        Ok(self.usable("lathe", span, made))
+        Ok(self.joined("lathe", span, pieces.iter().map(lathe_piece)))
+    }
+
+    /// The union of the pieces that have a volume; slivers that rounding has flattened have none.
+    fn joined(
+        &mut self,
+        word: &str,
+        span: Span,
+        pieces: impl Iterator<Item = Result<Solid, ShapeError>>,
+    ) -> Option<Geometry> {
+        let mut solids = Vec::new();
+        let mut failed = ShapeError::BadPolyhedron("flat");
+        for piece in pieces {
+            match piece {
+                Ok(solid) => solids.push(solid),
+                Err(error) => failed = error,
+            }
+        }
+        let made = if solids.is_empty() {
+            Err(failed)
+        } else {
+            Ok(Geometry::Solid(Solid::union(solids)))
+        };
+        self.usable(word, span, made)
     }
 
     fn curved(&mut self, word: &str) -> Parsed<Option<Geometry>> {

@@ -83,8 +83,8 @@ impl Terms {
         let count = self.count.max(other.count);
         let (a, b) = (self.promoted(count), other.promoted(count));
         let mut v = [0.0; 5];
-        for i in 0..count {
-            v[i] = f(a.v[i], b.v[i]);
+        for (out, (x, y)) in v.iter_mut().zip(a.v.into_iter().zip(b.v)).take(count) {
+            *out = f(x, y);
         }
         Self { count, v }
     }

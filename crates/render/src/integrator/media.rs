@@ -13,12 +13,19 @@ pub fn medium_of(scene: &Scene, region: Region) -> Option<MaterialId> {
 }
 
 /// What is left of light after `distance` in a medium (Beer and Lambert):
-/// `exp(-absorption * distance)`. An infinite distance leaves nothing where anything is absorbed.
+/// `exp(-absorption * distance)`, times what the medium's fade leaves. An infinite distance leaves
+/// nothing where anything is absorbed.
 #[must_use]
 pub fn transmission(scene: &Scene, medium: Option<MaterialId>, distance: f64) -> DVec3 {
-    let absorption = medium.map_or(DVec3::ZERO, |id| scene.material(id).interior.absorption);
-    if absorption == DVec3::ZERO {
+    let Some(interior) = medium.map(|id| &scene.material(id).interior) else {
         return DVec3::ONE;
+    };
+    let faded = interior
+        .fade
+        .map_or(DVec3::ONE, |fade| fade.transmission(distance));
+    let absorption = interior.absorption;
+    if absorption == DVec3::ZERO {
+        return faded;
     }
     let left = absorption.to_array().map(|a| {
         // 0 * infinity is not a number, but no absorption leaves everything.
@@ -28,5 +35,5 @@ pub fn transmission(scene: &Scene, medium: Option<MaterialId>, distance: f64) ->
             libm::exp(-a * distance)
         }
     });
-    DVec3::from_array(left)
+    DVec3::from_array(left) * faded
 }

@@ -74,6 +74,7 @@ pub(super) fn find(name: &str) -> Option<Standard> {
         "shapes.inc" => (include_str!("shapes.inc"), false, false, &[]),
         "finish.inc" => (include_str!("finish.inc"), false, true, &[]),
         "textures.inc" => (include_str!("textures.inc"), false, false, &["colors.inc"]),
+        "glass.inc" | "glass_old.inc" => (include_str!("glass.inc"), false, false, &[]),
         "stdinc.inc" => (include_str!("stdinc.inc"), false, false, &["colors.inc"]),
         "debug.inc" | "strings.inc" | "rand.inc" => ("", false, false, &[]),
         "metals.inc" | "golds.inc" | "stones.inc" | "woods.inc" | "skies.inc" => {
