@@ -9,7 +9,8 @@ use octray_import::{InMemory, Options, pov};
 fuzz_target!(|data: &[u8]| {
     let files = InMemory::default();
     let options = Options {
-        memory_budget: 64 << 20,
+        // Loops are bounded by it too.
+        memory_budget: 1 << 20,
         ..Options::default()
     };
     let imported = pov::import(Path::new("a.pov"), data.to_vec(), &files, &options);

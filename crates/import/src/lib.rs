@@ -4,6 +4,7 @@
 //! all in one go. None panics, hangs, or allocates more than a multiple of its input: sizes that
 //! a file claims are checked against [`Options::memory_budget`] first. Only [`Disk`] touches the file system.
 
+mod budget;
 pub mod diagnostic;
 pub mod dress;
 mod face_colors;

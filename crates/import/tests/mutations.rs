@@ -157,6 +157,29 @@ fn seeds_are_valid_and_so_is_no_beginning_of_a_mesh_with_a_count() {
     }
 }
 
+#[test]
+fn a_mesh_that_does_not_fit_into_the_budget_is_refused() {
+    for folder in ["nff", "obj", "ply", "stl"] {
+        for (path, bytes) in seeds(folder) {
+            let mut files = InMemory::default();
+            files.insert(&path, bytes.clone());
+            let options = Options {
+                // Enough to read the file, not to keep what is in it.
+                memory_budget: bytes.len() as u64,
+                ..Options::default()
+            };
+            let imported = load(&path, &files, &options);
+            assert!(imported.scene.is_none(), "{}", path.display());
+            let mut messages = imported.diagnostics.iter().map(|d| &d.message);
+            assert!(
+                messages.any(|m| m.contains("memory budget")),
+                "{}",
+                path.display()
+            );
+        }
+    }
+}
+
 macro_rules! mutated {
     ($($name:ident),*) => {
         $(

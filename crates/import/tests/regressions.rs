@@ -11,7 +11,7 @@ fn none_of_them_panics_or_is_accepted_with_errors() {
     for entry in std::fs::read_dir(folder).expect("the folder") {
         let path = entry.expect("an entry").path();
         let options = Options {
-            memory_budget: 64 << 20,
+            memory_budget: 4 << 20,
             ..Options::default()
         };
         let imported = load(&path, &Disk, &options);

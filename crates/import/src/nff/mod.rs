@@ -16,6 +16,7 @@ use std::path::Path;
 use octray_math::DVec3;
 use octray_scene::{Background, Encoding, Light, MaterialId, SceneBuilder, View};
 
+use crate::budget::Budget;
 use crate::polygon::Triangulator;
 use crate::text::{self, Word};
 use crate::{Diagnostics, FileSystem, Imported, Options, SourceId};
@@ -23,14 +24,14 @@ use polygons::Polygons;
 use view::ViewPoint;
 use words::NffWords;
 
+/// An object with its shape, or a material.
+const BYTES_PER_ENTITY: usize = 1024;
+/// A corner of a polygon, with vertex and normal and their places in the tables.
+const BYTES_PER_CORNER: usize = 256;
+
 /// Reads the bytes of the file `path`.
 #[must_use]
-pub fn import(
-    path: &Path,
-    bytes: Vec<u8>,
-    _files: &dyn FileSystem,
-    _options: &Options,
-) -> Imported {
+pub fn import(path: &Path, bytes: Vec<u8>, _files: &dyn FileSystem, options: &Options) -> Imported {
     let mut diagnostics = Diagnostics::default();
     let source = diagnostics.add_source(path, bytes);
     let bytes = diagnostics.shared_source(source);
@@ -61,9 +62,15 @@ pub fn import(
         polygons: Polygons::default(),
         triangulator: Triangulator::new(),
         counts: [0; 3],
+        budget: Budget::new(options.memory_budget),
     };
     while let Some(keyword) = reader.words.next() {
+        reader.budget.take(BYTES_PER_ENTITY);
         reader.entity(keyword);
+        if reader.budget.is_exhausted() {
+            reader.budget.report(reader.diagnostics);
+            break;
+        }
     }
     let builder = reader.end();
     Imported::finish(builder, diagnostics)
@@ -81,6 +88,7 @@ struct Reader<'a> {
     triangulator: Triangulator,
     /// Spheres, cones and polygon groups so far, for names.
     counts: [usize; 3],
+    budget: Budget,
 }
 
 impl Reader<'_> {

@@ -4,7 +4,7 @@ use octray_geometry::{ShapeError, Sheet, Solid};
 use octray_math::DVec3;
 use octray_scene::{MaterialId, Object};
 
-use super::{Reader, cone};
+use super::{BYTES_PER_CORNER, Reader, cone};
 use crate::text::Word;
 
 impl Reader<'_> {
@@ -79,6 +79,9 @@ impl Reader<'_> {
         let mut finite = true;
         // The numbers there are decide how far this goes, not the count that is claimed.
         while (corners.len() as f64) < count {
+            if !self.budget.take(BYTES_PER_CORNER) {
+                return;
+            }
             let mut values = [0.0; 6];
             let needed = if with_normals { 6 } else { 3 };
             for value in &mut values[..needed] {

@@ -4,6 +4,9 @@ use super::lines::Statement;
 use super::syntax::{Face, NONE, Reader};
 use crate::text::Word;
 
+/// Its indices, and its share of the triangles with their attributes.
+const BYTES_PER_CORNER: usize = 96;
+
 /// What a corner names.
 const ATTRIBUTES: [&str; 3] = ["vertex", "texture coordinate", "normal"];
 
@@ -12,6 +15,9 @@ impl Reader<'_> {
         let start = self.model.corners.len();
         let mut good = true;
         for word in statement {
+            if !self.budget.take(BYTES_PER_CORNER) {
+                return;
+            }
             match self.corner(word) {
                 Some(corner) => self.model.corners.push(corner),
                 None => good = false,

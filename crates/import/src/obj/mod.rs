@@ -36,7 +36,7 @@ pub fn import(path: &Path, bytes: Vec<u8>, files: &dyn FileSystem, options: &Opt
         diagnostics.error(None, format!("the file is {encoding}: {help}"));
         return Imported::failed(diagnostics);
     }
-    let model = syntax::read(&bytes, source, &mut diagnostics);
+    let model = syntax::read(&bytes, source, options, &mut diagnostics);
     let mut builder = SceneBuilder::new();
     // What modellers write has y upwards.
     builder.settings_mut().up = DVec3::Y;

@@ -6,12 +6,16 @@ use std::ops::Range;
 use octray_math::{DVec2, DVec3};
 
 use super::lines::{JoinedLines, Statement};
+use crate::budget::Budget;
 use crate::face_colors::linear_from_srgb;
 use crate::text::Word;
-use crate::{Diagnostics, SourceId, Span};
+use crate::{Diagnostics, Options, SourceId, Span};
 
 /// A corner has no such reference.
 pub(super) const NONE: u32 = u32::MAX;
+
+/// A vertex with its colour, or a face without its corners.
+const BYTES_PER_STATEMENT: usize = 96;
 
 /// What a file says.
 #[derive(Debug, Default)]
@@ -64,9 +68,15 @@ pub(super) struct Reader<'a> {
     /// Keywords already warned about.
     warned: BTreeSet<Vec<u8>>,
     pub missing_warned: [bool; 3],
+    pub budget: Budget,
 }
 
-pub(super) fn read(bytes: &[u8], source: SourceId, diagnostics: &mut Diagnostics) -> Model {
+pub(super) fn read(
+    bytes: &[u8],
+    source: SourceId,
+    options: &Options,
+    diagnostics: &mut Diagnostics,
+) -> Model {
     let mut totals = [0; 3];
     for mut statement in JoinedLines::new(bytes) {
         match statement.next().map(|w| w.bytes) {
@@ -90,10 +100,16 @@ pub(super) fn read(bytes: &[u8], source: SourceId, diagnostics: &mut Diagnostics
         smoothing: 0,
         warned: BTreeSet::new(),
         missing_warned: [false; 3],
+        budget: Budget::new(options.memory_budget),
     };
     for mut statement in JoinedLines::new(bytes) {
         if let Some(keyword) = statement.next() {
+            reader.budget.take(BYTES_PER_STATEMENT);
             reader.statement(keyword, statement);
+        }
+        if reader.budget.is_exhausted() {
+            reader.budget.report(reader.diagnostics);
+            break;
         }
     }
     reader.model

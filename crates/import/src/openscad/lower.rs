@@ -7,7 +7,6 @@ use octray_scene::{MaterialId, SceneBuilder};
 use crate::{Diagnostics, Options, Span};
 
 use super::arguments::Arguments;
-use super::budget::Budget;
 use super::modules::Module;
 use super::operand::{OpenFaces, Operand, Operation, Part};
 use super::paint::{Palette, Rgba, color_argument, is_complete};
@@ -15,6 +14,7 @@ use super::placement::{in_plane, matrix};
 use super::polyhedron::Polyhedron;
 use super::primitives::Workshop;
 use super::syntax::Statement;
+use crate::budget::Budget;
 
 /// The tree of a solid may be this deep, after groups of one and unions of unions are flattened.
 const MAX_DEPTH: u32 = 200;

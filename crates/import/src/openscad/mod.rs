@@ -16,7 +16,6 @@
 //!   changes nothing.
 
 mod arguments;
-mod budget;
 mod color_names;
 mod cursor;
 mod extrude;

@@ -7,9 +7,9 @@ use octray_geometry::{ConvexPolyhedron, Solid};
 use crate::{Diagnostics, Options, Span};
 
 use super::arguments::Arguments;
-use super::budget::Budget;
 use super::facets::{Resolution, frustum, rings, sphere};
 use super::syntax::Statement;
+use crate::budget::Budget;
 
 /// What a primitive needs besides its arguments.
 pub(super) struct Workshop<'w> {

@@ -22,12 +22,7 @@ use table::Tables;
 
 /// Reads the bytes of the file `path`: one object.
 #[must_use]
-pub fn import(
-    path: &Path,
-    bytes: Vec<u8>,
-    _files: &dyn FileSystem,
-    _options: &Options,
-) -> Imported {
+pub fn import(path: &Path, bytes: Vec<u8>, _files: &dyn FileSystem, options: &Options) -> Imported {
     let mut diagnostics = Diagnostics::default();
     let source = diagnostics.add_source(path, bytes);
     let bytes = diagnostics.shared_source(source);
@@ -43,7 +38,7 @@ pub fn import(
     let Some(header) = header::read(&bytes, source, &mut diagnostics) else {
         return Imported::failed(diagnostics);
     };
-    let Some(tables) = table::read(&bytes, source, &header, &mut diagnostics) else {
+    let Some(tables) = table::read(&bytes, source, &header, options, &mut diagnostics) else {
         return Imported::failed(diagnostics);
     };
     if diagnostics.has_errors() {

@@ -4,9 +4,15 @@ use octray_math::{DVec2, DVec3};
 
 use super::header::{Element, Header, Kind};
 use super::rows::{Body, Row};
+use crate::budget::Budget;
 use crate::face_colors::linear_from_srgb;
 use crate::polygon::Triangulator;
-use crate::{Diagnostics, SourceId};
+use crate::{Diagnostics, Options, SourceId};
+
+/// Position, normal, texture coordinates, colour.
+const BYTES_PER_VERTEX: usize = 96;
+/// A corner's share of its face and of the triangles with their attributes.
+const BYTES_PER_CORNER: usize = 64;
 
 /// What has been read.
 #[derive(Debug, Default)]
@@ -28,6 +34,7 @@ struct Reader<'a> {
     /// Faces with their corners, split when all positions are known.
     faces: Faces,
     vertex_count: u64,
+    budget: Budget,
 }
 
 #[derive(Default)]
@@ -49,6 +56,7 @@ pub(super) fn read(
     bytes: &[u8],
     source: SourceId,
     header: &Header,
+    options: &Options,
     diagnostics: &mut Diagnostics,
 ) -> Option<Tables> {
     let vertices = header.elements.iter().find(|e| e.name == "vertex");
@@ -58,6 +66,7 @@ pub(super) fn read(
         tables: Tables::default(),
         faces: Faces::default(),
         vertex_count: vertices.map_or(0, |e| e.count),
+        budget: Budget::new(options.memory_budget),
     };
     for element in &header.elements {
         let least = element.least_row_length(header.format);
@@ -92,7 +101,13 @@ impl Reader<'_> {
         let mut row = Row::default();
         for _ in 0..element.count {
             match self.body.read_row(element, &mut row) {
-                Ok(()) => take(self, &row),
+                Ok(()) => {
+                    take(self, &row);
+                    if self.budget.is_exhausted() {
+                        self.budget.report(self.diagnostics);
+                        return None;
+                    }
+                }
                 Err(bad) => {
                     self.body.report(&bad, self.diagnostics);
                     if !bad.next_is_known {
@@ -125,8 +140,8 @@ impl Reader<'_> {
         );
         let color = color_columns(element);
         let (mut normals, mut texcoords, mut colors) = (Vec::new(), Vec::new(), Vec::new());
-        self.tables.positions.reserve(element.count as usize);
         self.each_row(element, |reader, row| {
+            reader.budget.take(BYTES_PER_VERTEX);
             let p = DVec3::new(row.number(x), row.number(y), row.number(z));
             if !p.is_finite() {
                 let index = reader.tables.positions.len();
@@ -186,6 +201,9 @@ impl Reader<'_> {
             let message = format!("a face has at least 3 corners, this one {}", corners.len());
             self.body
                 .error(row.place.clone(), &message, self.diagnostics);
+            return;
+        }
+        if !self.budget.take(BYTES_PER_CORNER * corners.len()) {
             return;
         }
         let start = self.faces.corners.len();

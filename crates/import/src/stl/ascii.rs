@@ -2,7 +2,8 @@
 
 use octray_math::DVec3;
 
-use super::Part;
+use super::{BYTES_PER_TRIANGLE, Part};
+use crate::budget::Budget;
 use crate::polygon::Triangulator;
 use crate::text::{Lines, Word, Words, text_start};
 use crate::{Diagnostics, SourceId, Span};
@@ -10,6 +11,7 @@ use crate::{Diagnostics, SourceId, Span};
 struct Reader<'a> {
     source: SourceId,
     diagnostics: &'a mut Diagnostics,
+    budget: &'a mut Budget,
     triangulator: Triangulator,
     parts: Vec<Part>,
     part: Part,
@@ -20,10 +22,16 @@ struct Reader<'a> {
     spoiled: bool,
 }
 
-pub(super) fn read(bytes: &[u8], source: SourceId, diagnostics: &mut Diagnostics) -> Vec<Part> {
+pub(super) fn read(
+    bytes: &[u8],
+    source: SourceId,
+    budget: &mut Budget,
+    diagnostics: &mut Diagnostics,
+) -> Vec<Part> {
     let mut reader = Reader {
         source,
         diagnostics,
+        budget,
         triangulator: Triangulator::new(),
         parts: Vec::new(),
         part: Part::default(),
@@ -35,6 +43,9 @@ pub(super) fn read(bytes: &[u8], source: SourceId, diagnostics: &mut Diagnostics
         let mut words = Words::new(bytes, start, end);
         if let Some(keyword) = words.next() {
             reader.line(keyword, words);
+        }
+        if reader.budget.is_exhausted() {
+            return Vec::new();
         }
     }
     reader.end(bytes.len())
@@ -112,7 +123,7 @@ impl Reader<'_> {
                 .diagnostics
                 .error(span, "`endloop` without `outer loop`");
         };
-        if self.spoiled {
+        if self.spoiled || !self.budget.take(BYTES_PER_TRIANGLE * corners.len()) {
             return;
         }
         if corners.len() < 3 {

@@ -3,8 +3,9 @@
 
 use octray_math::DVec3;
 
-use super::Part;
+use super::{BYTES_PER_TRIANGLE, Part};
 use crate::Diagnostics;
+use crate::budget::Budget;
 
 const HEADER: usize = 84;
 const RECORD: usize = 50;
@@ -20,7 +21,7 @@ pub(super) const fn length(triangles: u32) -> u64 {
     HEADER as u64 + RECORD as u64 * triangles as u64
 }
 
-pub(super) fn read(bytes: &[u8], diagnostics: &mut Diagnostics) -> Vec<Part> {
+pub(super) fn read(bytes: &[u8], budget: &mut Budget, diagnostics: &mut Diagnostics) -> Vec<Part> {
     let Some(count) = announced(bytes) else {
         diagnostics.error(
             None,
@@ -81,6 +82,9 @@ pub(super) fn read(bytes: &[u8], diagnostics: &mut Diagnostics) -> Vec<Part> {
                 ),
             );
             continue;
+        }
+        if !budget.take(BYTES_PER_TRIANGLE) {
+            break;
         }
         part.add(corners);
     }

@@ -12,10 +12,14 @@ use octray_geometry::TriangleMesh;
 use octray_math::DVec3;
 use octray_scene::SceneBuilder;
 
+use crate::budget::Budget;
 use crate::dress::default_material;
 use crate::mesh_object::{file_stem, mesh_object};
 use crate::weld::Welder;
 use crate::{Diagnostics, FileSystem, Imported, Options, text};
+
+/// A triangle with, at worst, three vertices of its own and their places in the table.
+const BYTES_PER_TRIANGLE: usize = 256;
 
 /// One `solid` of the file.
 #[derive(Default)]
@@ -34,23 +38,20 @@ impl Part {
 
 /// Reads the bytes of the file `path`. Every solid that has triangles becomes an object.
 #[must_use]
-pub fn import(
-    path: &Path,
-    bytes: Vec<u8>,
-    _files: &dyn FileSystem,
-    _options: &Options,
-) -> Imported {
+pub fn import(path: &Path, bytes: Vec<u8>, _files: &dyn FileSystem, options: &Options) -> Imported {
     let mut diagnostics = Diagnostics::default();
     let source = diagnostics.add_source(path, bytes);
     let bytes = diagnostics.shared_source(source);
+    let mut budget = Budget::new(options.memory_budget);
     let parts = match Kind::of(&bytes) {
-        Ok(Kind::Binary) => binary::read(&bytes, &mut diagnostics),
-        Ok(Kind::Ascii) => ascii::read(&bytes, source, &mut diagnostics),
+        Ok(Kind::Binary) => binary::read(&bytes, &mut budget, &mut diagnostics),
+        Ok(Kind::Ascii) => ascii::read(&bytes, source, &mut budget, &mut diagnostics),
         Err(problem) => {
             diagnostics.error(None, problem);
             return Imported::failed(diagnostics);
         }
     };
+    budget.report(&mut diagnostics);
     let mut builder = SceneBuilder::new();
     let material = builder.add_material(default_material());
     for mut part in parts {

@@ -7,21 +7,46 @@ const BYTES_PER_FACE: u64 = 256;
 
 /// What is left of [`crate::Options::memory_budget`].
 #[derive(Debug)]
-pub(super) struct Budget {
+pub(crate) struct Budget {
     left: u64,
     all: u64,
+    exhausted: bool,
 }
 
 impl Budget {
-    pub(super) const fn new(bytes: u64) -> Self {
+    pub(crate) const fn new(bytes: u64) -> Self {
         Self {
             left: bytes,
             all: bytes,
+            exhausted: false,
+        }
+    }
+
+    /// Takes the memory of a piece of a mesh; `false` from when there is not enough.
+    pub(crate) const fn take(&mut self, bytes: usize) -> bool {
+        self.exhausted |= bytes as u64 > self.left;
+        self.left = self.left.saturating_sub(bytes as u64);
+        !self.exhausted
+    }
+
+    /// Whether [`Budget::take`] has failed.
+    pub(crate) const fn is_exhausted(&self) -> bool {
+        self.exhausted
+    }
+
+    /// Reports that a mesh is too large, if it is.
+    pub(crate) fn report(&self, diagnostics: &mut Diagnostics) {
+        if self.exhausted {
+            let message = format!(
+                "the mesh does not fit into the memory budget of {} MiB",
+                self.all >> 20
+            );
+            diagnostics.error(None, message);
         }
     }
 
     /// Takes the memory of this many faces, or reports that there is not enough.
-    pub(super) fn take_faces(
+    pub(crate) fn take_faces(
         &mut self,
         faces: usize,
         span: Span,
