@@ -144,6 +144,20 @@ def test_a_closed_mesh_is_a_solid_and_a_convex_one_is_a_polyhedron() -> None:
         assert count(solid - octray.box(0.5).translate(0.3, 0.2, 2), DOWN) == 4
 
 
+def test_a_polyhedron_may_have_dents() -> None:
+    # An L of height 1 over (0, 0), (3, 0), (3, 1), (1, 1), (1, 3), (0, 3).
+    outline = [(0, 0), (3, 0), (3, 1), (1, 1), (1, 3), (0, 3)]
+    corners = [(x, y, z) for z in (0.0, 1.0) for x, y in outline]
+    n = len(outline)
+    sides = [[i, (i + 1) % n, (i + 1) % n + n, i + n] for i in range(n)]
+    solid = octray.polyhedron(corners, [list(range(n))[::-1], list(range(n, 2 * n)), *sides])
+    along_x = [[-5, y, 0.4, 1, 0, 0] for y in (0.5, 1.5, 2.5, 3.5)]
+    scene = scene_of(solid)
+    assert scene.count_intersections(np.array(along_x)).tolist() == [2, 2, 2, 0]
+    back = [[5, y, 0.4, -1, 0, 0] for y in (0.5, 1.5)]
+    assert scene.cast_rays(np.array(back)).t.tolist() == [2, 4]
+
+
 def test_open_meshes_are_refused_as_solids() -> None:
     with pytest.raises(ValueError, match="not closed"):
         octray.mesh_solid([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]])
@@ -171,6 +185,8 @@ def test_open_meshes_are_refused_as_solids() -> None:
         (lambda: octray.mesh_solid([[0, 0, 0]], [[0, 0.5, 0]]), "integers"),
         (lambda: octray.mesh_solid([[0, 0, math.nan]], [[0, 0, 0]]), "not finite"),
         (lambda: octray.mesh_solid([], []), "no triangles"),
+        (lambda: octray.polyhedron([[0, 0, 0]], [[0, 1, 2]]), "face 0 uses a corner"),
+        (lambda: octray.polyhedron([[0, 0, 0]], 3), "lists of vertex indices"),
     ],
 )
 def test_what_is_no_solid_is_refused_with_a_reason(

@@ -74,12 +74,3 @@ pub(crate) fn colored(rgb: DVec3) -> Material {
         ..default_material()
     }
 }
-
-/// The linear value of an sRGB-encoded one in `[0, 1]` (IEC 61966-2-1).
-pub(crate) fn linear_from_srgb(encoded: f64) -> f64 {
-    if encoded <= 0.04045 {
-        encoded / 12.92
-    } else {
-        libm::pow((encoded + 0.055) / 1.055, 2.4)
-    }
-}

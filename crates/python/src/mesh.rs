@@ -4,6 +4,7 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use octray::geometry::{Primitive, Sheet, Solid, SolidNode, TriangleMesh};
+use octray::import::polygon::Triangulator;
 use octray::math::{DAffine3, DVec3};
 use octray::scene::{MaterialId, Shape as ObjectShape};
 use pyo3::exceptions::{PyTypeError, PyValueError};
@@ -134,6 +135,27 @@ pub(crate) fn from_arrays(
         triangles.push(indices);
     }
     TriangleMesh::new(positions, triangles)
+        .map(Arc::new)
+        .map_err(value_error)
+}
+
+/// A mesh whose faces are plane polygons.
+pub(crate) fn triangulated(corners: Vec<DVec3>, faces: &[Vec<u32>]) -> PyResult<Arc<TriangleMesh>> {
+    let mut triangulator = Triangulator::new();
+    let mut triangles = Vec::new();
+    for (number, face) in faces.iter().enumerate() {
+        let place = |&i: &u32| corners.get(i as usize).copied();
+        let outline: Option<Vec<DVec3>> = face.iter().map(place).collect();
+        let outline = outline.ok_or_else(|| {
+            PyValueError::new_err(format!(
+                "face {number} uses a corner that is not there: there are only {}",
+                corners.len()
+            ))
+        })?;
+        let split = triangulator.triangulate(&outline).map_err(value_error)?;
+        triangles.extend(split.iter().map(|t| t.map(|i| face[i as usize])));
+    }
+    TriangleMesh::new(corners, triangles)
         .map(Arc::new)
         .map_err(value_error)
 }

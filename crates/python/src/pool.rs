@@ -19,6 +19,11 @@ pub(crate) fn default_threads() -> usize {
     std::thread::available_parallelism().map_or(1, std::num::NonZero::get)
 }
 
+/// Leaves the pool to work that nobody waits for any more; the next caller gets another one.
+pub(crate) fn discard() {
+    *POOL.lock().unwrap_or_else(PoisonError::into_inner) = None;
+}
+
 /// A pool of `threads` threads; the same one as long as the number stays the same.
 pub(crate) fn pool(threads: Option<usize>) -> PyResult<Arc<ThreadPool>> {
     let threads = threads.unwrap_or_else(default_threads);

@@ -298,20 +298,20 @@ pub(crate) fn half_space(normal: &Bound<'_, PyAny>, d: f64) -> PyResult<Solid> {
     checked(octray::geometry::Solid::half_space(normal, d))
 }
 
-/// A convex polyhedron from its corners, shape (N, 3), and its faces: a list of lists of corner
-/// indices in order round the face, either way.
+/// A polyhedron from its corners, shape (N, 3), and its plane faces: a list of lists of corner
+/// indices in order round the face, counter-clockwise seen from outside (either way round if it
+/// is convex).
 #[pyfunction]
 pub(crate) fn polyhedron(vertices: &Bound<'_, PyAny>, faces: &Bound<'_, PyAny>) -> PyResult<Solid> {
     let faces = mesh::polygons(faces)?;
     let vertices = mesh::positions(vertices)?;
-    let polyhedron = ConvexPolyhedron::from_faces(vertices, &faces).map_err(|error| {
-        PyValueError::new_err(format!(
-            "{error}; octray.mesh_solid takes any closed surface of triangles"
-        ))
-    })?;
-    Ok(Solid::leaf(octray::geometry::Solid::convex(Arc::new(
-        polyhedron,
-    ))))
+    if let Ok(convex) = ConvexPolyhedron::from_faces(vertices.clone(), &faces) {
+        return Ok(Solid::leaf(octray::geometry::Solid::convex(Arc::new(
+            convex,
+        ))));
+    }
+    let mesh = mesh::triangulated(vertices, &faces)?;
+    checked(octray::geometry::Solid::mesh(mesh))
 }
 
 /// The inside of a closed triangle mesh whose triangles run counter-clockwise seen from outside.

@@ -57,7 +57,8 @@ pub(crate) fn prepared(
     let start = Instant::now();
     let world = task::run(py, move |_| {
         pool.install(|| World::prepare(Arc::new(plain), &config))
-    })?;
+    })
+    .inspect_err(|_| crate::pool::discard())?;
     let world = world.map_err(|error| invalid_scene(py, &[error]))?;
     let prepared = Prepared {
         world: Arc::new(world),

@@ -25,7 +25,6 @@ pub use driver::{Observer, RenderJob, Rendering, render};
 pub use film::{Film, MAX_CONTRIBUTION, PixelSums};
 pub use image::{
     Image, ImageError, develop, develop_color, encode_exr, encode_png, neutral, scene_to_linear,
-    srgb_decode, srgb_encode,
 };
 pub use integrator::{Integrator, MAX_INTERFACES, ShadowTracer, Whitted, medium_of, transmission};
 pub use light::{Illumination, illuminate};

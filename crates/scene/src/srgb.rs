@@ -30,9 +30,15 @@ mod tests {
 
     #[test]
     fn the_curve_has_its_published_values_and_an_inverse() {
-        // Mid-grey 18 % is encoded as 0.4614 (118 of 255), 50 % code is 0.2140 light.
-        assert!((linear_to_srgb(0.18) - 0.4614).abs() < 5e-5);
-        assert!((srgb_to_linear(0.5) - 0.2140).abs() < 5e-5);
+        // Mid grey: 18 % and 50 % light, a value of the straight part, and the 8-bit value 128.
+        for (light, value) in [
+            (0.18, 0.461_356_129_500_441_64),
+            (0.5, 0.735_356_983_052_449_5),
+            (0.002, 0.025_84),
+        ] {
+            assert!((linear_to_srgb(light) - value).abs() < 1e-12, "{light}");
+        }
+        assert!((srgb_to_linear(128.0 / 255.0) - 0.215_860_500_113_899_26).abs() < 1e-12);
         assert_eq!((srgb_to_linear(0.0), srgb_to_linear(1.0)), (0.0, 1.0));
         for code in -300..=300 {
             let encoded = f64::from(code) / 255.0;

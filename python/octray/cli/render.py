@@ -105,6 +105,7 @@ class _Run:
         if options["output"] == "-" and options["preview"]:
             raise click.UsageError("--preview writes the picture several times: -o cannot be -")
         self.report = Report(path, options)
+        self.output: Output | None = None
         self.style: Style = "none" if options["quiet"] else options["progress"]
 
     def run(self) -> int:
@@ -119,7 +120,7 @@ class _Run:
                 self.report.add_messages(error.diagnostics)
             code = error.code
         except KeyboardInterrupt:
-            self._say("octray: interrupted; nothing was written")
+            self._say(f"octray: interrupted; {self._what_is_there()}")
             code = Exit.INTERRUPTED
         if self.options["as_json"]:
             click.echo(self.report.to_json(code))
@@ -145,7 +146,7 @@ class _Run:
 
     def _render(self) -> Exit:
         options = self.options
-        output = Output(options["output"], self.path)
+        output = self.output = Output(options["output"], self.path)
         scene = self._load()
         with self._phase("build"):
             scene.prepare(accel=options["accel"], threads=options["threads"])
@@ -202,13 +203,18 @@ class _Run:
 
     def _keep_partial(self, image: Image, output: Output) -> Exit:
         if image.report["finished_pixels"] == 0 or output.to_stdout:
-            self._say("octray: interrupted; nothing was written")
+            self._say(f"octray: interrupted; {self._what_is_there()}")
             return Exit.INTERRUPTED
         output.write(image, self.options["view"])
         self.report.add_output(output, image)
         share = image.report["finished_pixels"] / (image.width * image.height)
         self._say(f"octray: interrupted; {output.name} has the {share:.0%} that were finished")
         return Exit.INTERRUPTED
+
+    def _what_is_there(self) -> str:
+        if self.output is not None and self.output.written:
+            return f"{self.output.name} has the picture as it was last shown"
+        return "nothing was written"
 
     def _phase(self, name: str) -> _Phase:
         return _Phase(name, self.report, Progress(name, self.style))

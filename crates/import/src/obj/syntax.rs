@@ -4,10 +4,10 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
 
 use octray_math::{DVec2, DVec3};
+use octray_scene::srgb_to_linear;
 
 use super::lines::{JoinedLines, Statement};
 use crate::budget::Budget;
-use crate::face_colors::linear_from_srgb;
 use crate::text::Word;
 use crate::{Diagnostics, Options, SourceId, Span};
 
@@ -229,7 +229,7 @@ impl Reader<'_> {
             }
         };
         if let Some(color) = color.filter(|c| c.iter().all(|x| x.is_finite())) {
-            let linear = |x: f64| linear_from_srgb(x.clamp(0.0, 1.0));
+            let linear = |x: f64| srgb_to_linear(x.clamp(0.0, 1.0));
             self.model.colors.resize(self.model.positions.len(), None);
             let color = DVec3::from_array(color.map(linear));
             self.model.colors.push(Some(color));

@@ -1,11 +1,11 @@
 //! The elements of a PLY file that make a mesh.
 
 use octray_math::{DVec2, DVec3};
+use octray_scene::srgb_to_linear;
 
 use super::header::{Element, Header, Kind};
 use super::rows::{Body, Row};
 use crate::budget::Budget;
-use crate::face_colors::linear_from_srgb;
 use crate::polygon::Triangulator;
 use crate::{Diagnostics, Options, SourceId};
 
@@ -322,7 +322,7 @@ impl ColorColumns {
         let part = |column: usize| {
             let value = row.number(column);
             let value = match self.most {
-                Some(most) => linear_from_srgb((value / most).clamp(0.0, 1.0)),
+                Some(most) => srgb_to_linear((value / most).clamp(0.0, 1.0)),
                 None => value.clamp(0.0, 1.0),
             };
             if value.is_finite() { value } else { 0.0 }

@@ -1,9 +1,9 @@
 //! Light to display values.
 
 use octray_math::DVec3;
-use octray_scene::View;
+use octray_scene::{View, linear_to_srgb};
 
-use super::{Image, neutral, srgb_encode};
+use super::{Image, neutral};
 
 /// Red, green and blue bytes, in rows from the top.
 ///
@@ -24,7 +24,7 @@ pub fn develop(image: &Image, view: View) -> Vec<u8> {
 /// One colour in linear light to display values, not clipped.
 #[must_use]
 pub fn develop_color(light: DVec3, view: View) -> DVec3 {
-    let encoded = |light: DVec3| DVec3::from_array(light.to_array().map(srgb_encode));
+    let encoded = |light: DVec3| DVec3::from_array(light.to_array().map(linear_to_srgb));
     match view {
         View::Raw => light,
         View::Standard => encoded(light),
@@ -70,7 +70,7 @@ mod tests {
     #[test]
     fn neutral_is_the_tone_mapper_and_then_the_curve() {
         let light = DVec3::new(3.0, 0.4, 0.2);
-        let expected = neutral(light).to_array().map(srgb_encode);
+        let expected = neutral(light).to_array().map(linear_to_srgb);
         assert_eq!(develop_color(light, View::Neutral).to_array(), expected);
     }
 }

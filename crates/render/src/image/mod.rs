@@ -4,16 +4,14 @@ mod develop;
 mod exr;
 mod neutral;
 mod png;
-mod srgb;
 
 pub use develop::{develop, develop_color};
 pub use exr::encode_exr;
 pub use neutral::neutral;
 pub use png::encode_png;
-pub use srgb::{srgb_decode, srgb_encode};
 
 use octray_math::DVec3;
-use octray_scene::Encoding;
+use octray_scene::{Encoding, srgb_to_linear};
 use thiserror::Error;
 
 use crate::Film;
@@ -137,7 +135,7 @@ pub fn scene_to_linear(value: DVec3, encoding: Encoding) -> DVec3 {
     let decode = |v: f64| match encoding {
         Encoding::Linear => v,
         Encoding::Gamma(gamma) => libm::pow(v.abs(), gamma).copysign(v),
-        Encoding::Srgb => srgb_decode(v.abs()).copysign(v),
+        Encoding::Srgb => srgb_to_linear(v),
     };
     DVec3::from_array(value.to_array().map(decode))
 }
