@@ -172,6 +172,7 @@ mod tests {
     use super::*;
     use octray_math::DAffine3;
     use proptest::prelude::*;
+    use std::f64::consts::TAU;
 
     fn vector(range: std::ops::Range<f64>) -> impl Strategy<Value = DVec3> {
         (range.clone(), range.clone(), range).prop_map(|(x, y, z)| DVec3::new(x, y, z))
@@ -218,7 +219,7 @@ mod tests {
         #[test]
         fn roots_of_a_torus_lie_on_it(
             minor in prop_oneof![1e-3..1.0f64, 1.0..3.0f64],
-            angle in 0.0..6.28f64, tube in 0.0..6.28f64, d in vector(-1.0..1.0), far in 0.0..1e3f64,
+            angle in 0.0..TAU, tube in 0.0..TAU, d in vector(-1.0..1.0), far in 0.0..1e3f64,
         ) {
             prop_assume!(d.length() > 1e-2);
             // Aim at a point inside the tube, so that the line must cross.
@@ -227,7 +228,7 @@ mod tests {
             let target = DVec3::new(rho * c, rho * s, 0.9 * minor * libm::sin(tube));
             let ray = Ray::new(target - d * far, d);
             let changes = torus_surface(minor).crossings(&ray);
-            prop_assert!(changes.count >= 2 && changes.count % 2 == 0);
+            prop_assert!(changes.count >= 2 && changes.count.is_multiple_of(2));
             prop_assert!(!changes.starts_negative);
             let mut inside = false;
             for (i, &t) in changes.as_slice().iter().enumerate() {
