@@ -83,7 +83,9 @@ pub struct CellTreeStats {
     pub bytes: u64,
     /// Cells that were left undivided because the depth limit was reached.
     pub stopped_by_depth: u64,
-    /// Whether division stopped because of the memory limit.
+    /// Cells that were left undivided because the tree had become large for what it holds.
+    pub stopped_by_size: u64,
+    /// Whether it was the memory limit that stopped them.
     pub stopped_by_memory: bool,
 }
 
