@@ -237,7 +237,10 @@ impl Reader<'_> {
         match &*word {
             "texture" => {
                 if let Value::Texture(texture) = self.texture_value()? {
-                    object.texture = Some(texture);
+                    object.texture = Some(match object.texture.take() {
+                        Some(below) => below.under(&texture),
+                        None => texture,
+                    });
                 }
             }
             "pigment" | "finish" | "normal" => {
