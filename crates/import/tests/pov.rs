@@ -509,6 +509,22 @@ fn what_is_not_supported_is_left_out_with_a_warning() {
 }
 
 #[test]
+fn what_is_cut_from_something_left_out_is_not_shown() {
+    let blob = "blob { threshold 0.6 sphere { 0, 1, 1 } }";
+    let bounds = |text: String| import(&text).scene.expect("a scene").bounds();
+    assert!(bounds(format!("difference {{ {blob} sphere {{ 0, 5 }} }}")).is_empty());
+    assert!(bounds(format!("intersection {{ plane {{ y, 0 }} {blob} }}")).is_empty());
+    assert_eq!(
+        bounds(format!("difference {{ sphere {{ 0, 5 }} {blob} }}")).max,
+        DVec3::splat(5.0)
+    );
+    assert_eq!(
+        bounds(format!("union {{ sphere {{ 0, 5 }} {blob} }}")).max,
+        DVec3::splat(5.0)
+    );
+}
+
+#[test]
 fn nothing_goes_on_for_ever_or_too_deep() {
     let small = Options {
         memory_budget: 1 << 20,

@@ -325,9 +325,11 @@ impl<'a> Lowering<'a> {
             Geometry::Operation(operation, children) => {
                 let solids = children
                     .iter()
-                    .filter_map(|child| self.operand(child, frame, context));
+                    .filter(|child| !matches!(child.geometry, Geometry::Light(_)))
+                    .map(|child| self.operand(child, frame, context))
+                    // What cannot be an operand counts as empty.
+                    .map(|operand| operand.unwrap_or_else(Solid::empty));
                 let solids: Vec<Solid> = solids.collect();
-                // A part that is left out of an intersection bounds nothing.
                 Some(match operation {
                     Operation::Union | Operation::Merge => Solid::union(solids),
                     Operation::Intersection => Solid::intersection(solids),
