@@ -156,6 +156,11 @@ fn loops_branches_and_macros_run() {
             10.0,
         ),
         (
+            "#declare A = array[2] { 1, 2 } #if (A[1] = 2) #declare N = 6; #end",
+            6.0,
+        ),
+        ("#declare N = #if (1) 5 #else 6 #end;", 5.0),
+        (
             "#declare A = array[3] {1, 2, 3} #declare N = dimension_size(A, 1);",
             3.0,
         ),
@@ -265,6 +270,28 @@ fn textures_are_inherited_and_move_with_their_object() {
     let finish = material_of(&made, b).finish;
     assert_eq!((finish.phong, finish.ambient), (0.5, DVec3::splat(0.3)));
     assert_eq!(material_of(&made, a).finish.phong, 0.0);
+}
+
+#[test]
+fn a_second_texture_lies_over_the_first() {
+    let text = "#declare A = sphere { 0, 1 pigment { rgb x } }
+        object { A texture { pigment { rgbt <0, 1, 0, 0.5> } } }
+        object { A texture { pigment { rgb y } } }
+        object { A pigment { rgb z } }";
+    let imported = import(text);
+    let warnings = messages(&imported, Severity::Warning);
+    assert!(
+        warnings.iter().all(|w| w.contains("layered")),
+        "{warnings:?}"
+    );
+    let made = imported.scene.expect("a scene");
+    let colors: Vec<DVec3> = made
+        .objects()
+        .iter()
+        .map(|object| material_of(&made, object).pigment.at(DVec3::ZERO).rgb)
+        .collect();
+    // A veil is not shown, only what hides all below it; a pigment replaces a pigment.
+    assert_eq!(colors, [DVec3::X, DVec3::Y, DVec3::Z]);
 }
 
 #[test]
@@ -479,6 +506,22 @@ fn what_is_not_supported_is_left_out_with_a_warning() {
         panic!("{scene:?}");
     };
     assert_eq!(color.rgb, DVec3::splat(0.5));
+}
+
+#[test]
+fn what_is_cut_from_something_left_out_is_not_shown() {
+    let blob = "blob { threshold 0.6 sphere { 0, 1, 1 } }";
+    let bounds = |text: String| import(&text).scene.expect("a scene").bounds();
+    assert!(bounds(format!("difference {{ {blob} sphere {{ 0, 5 }} }}")).is_empty());
+    assert!(bounds(format!("intersection {{ plane {{ y, 0 }} {blob} }}")).is_empty());
+    assert_eq!(
+        bounds(format!("difference {{ sphere {{ 0, 5 }} {blob} }}")).max,
+        DVec3::splat(5.0)
+    );
+    assert_eq!(
+        bounds(format!("union {{ sphere {{ 0, 5 }} {blob} }}")).max,
+        DVec3::splat(5.0)
+    );
 }
 
 #[test]

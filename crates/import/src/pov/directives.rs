@@ -1,19 +1,18 @@
 //! `#if`, `#while`, `#for`, `#switch` and the small directives.
 
-use super::lexer::{Kind, Token};
+use super::lexer::Kind;
 use super::reader::{Parsed, Reader};
-use super::value::{Terms, Value};
 use crate::Span;
 
 /// A directive that waits for its `#end`.
 #[derive(Clone, Debug)]
 pub(super) struct Flow {
     pub(super) span: Span,
-    kind: FlowKind,
+    pub(super) kind: FlowKind,
 }
 
 #[derive(Clone, Debug)]
-enum FlowKind {
+pub(super) enum FlowKind {
     If,
     Switch,
     /// Where the condition begins.
@@ -27,7 +26,7 @@ enum FlowKind {
 }
 
 /// What counts as equal in `#switch` and as reached in `#for`, as in POV-Ray.
-const TOLERANCE: f64 = 1e-10;
+pub(super) const TOLERANCE: f64 = 1e-10;
 
 impl Reader<'_> {
     /// Whether this directive, met in the value of a `#declare`, must wait until it is stored:
@@ -99,12 +98,12 @@ impl Reader<'_> {
         }
     }
 
-    fn open_flow(&mut self, kind: FlowKind, span: Span) {
+    pub(super) fn open_flow(&mut self, kind: FlowKind, span: Span) {
         self.flow.push(Flow { span, kind });
     }
 
     /// The innermost open directive of the present file or macro.
-    fn top_flow(&self) -> Option<&FlowKind> {
+    pub(super) fn top_flow(&self) -> Option<&FlowKind> {
         let base = self.frames.last().map_or(0, |frame| frame.flow);
         self.flow[base.min(self.flow.len())..]
             .last()
@@ -112,7 +111,7 @@ impl Reader<'_> {
     }
 
     /// `( expression )` as a truth value.
-    fn condition(&mut self) -> Parsed<bool> {
+    pub(super) fn condition(&mut self) -> Parsed<bool> {
         Ok(self.bracketed(1)?[0] != 0.0)
     }
 
@@ -188,25 +187,8 @@ impl Reader<'_> {
         }
     }
 
-    /// `#break`: behind the `#end` of the innermost loop or switch.
-    fn leave_loop(&mut self, span: Span) -> Parsed<()> {
-        loop {
-            match self.top_flow() {
-                Some(FlowKind::If) => {
-                    self.flow.pop();
-                    self.skip_to(&[], span)?;
-                }
-                Some(_) => {
-                    self.flow.pop();
-                    return self.skip_to(&[], span).map(drop);
-                }
-                None => return self.fail(span, "this `#break` is in no loop and no `#switch`"),
-            }
-        }
-    }
-
     /// Goes on behind the next directive of `stops` or the `#end`, both of this level.
-    fn skip_to(&mut self, stops: &[&str], span: Span) -> Parsed<std::rc::Rc<str>> {
+    pub(super) fn skip_to(&mut self, stops: &[&str], span: Span) -> Parsed<std::rc::Rc<str>> {
         let mut depth = 0_usize;
         if let Some(frame) = self.frames.last_mut() {
             while frame.at < frame.end {
@@ -252,108 +234,6 @@ impl Reader<'_> {
                 return Ok(());
             }
         }
-    }
-
-    /// `#for (Name, first, last [, step])`.
-    fn start_for(&mut self, span: Span) -> Parsed<()> {
-        self.expect("(")?;
-        let token = self.next();
-        let Some(name) = token.word().cloned() else {
-            return self.fail(token.span, "expected the loop's variable");
-        };
-        self.expect(",")?;
-        let first = self.expression()?.v[0];
-        self.expect(",")?;
-        let last = self.expression()?.v[0];
-        let step = if self.eat(",") {
-            self.expression()?.v[0]
-        } else {
-            1.0
-        };
-        self.expect(")")?;
-        if step == 0.0 || step.is_nan() {
-            return self.fail(span, "a loop cannot go in steps of 0");
-        }
-        let body = self.frames.last().map_or(0, |frame| frame.at);
-        let value = Value::Terms(Terms::number(first));
-        self.scopes.local(std::rc::Rc::clone(&name), value);
-        if past(first, last, step) {
-            return self.skip_to(&[], span).map(drop);
-        }
-        let kind = FlowKind::For {
-            body,
-            name,
-            last,
-            step,
-        };
-        self.open_flow(kind, span);
-        Ok(())
-    }
-
-    fn end(&mut self, span: Span) -> Parsed<()> {
-        let Some(kind) = self.top_flow().cloned() else {
-            return self.fail(span, "this `#end` closes nothing");
-        };
-        let behind = self.frames.last().map_or(0, |frame| frame.at);
-        let again = match kind {
-            FlowKind::If | FlowKind::Switch => false,
-            FlowKind::While(condition) => {
-                self.jump(condition);
-                self.condition()?
-            }
-            FlowKind::For {
-                body,
-                name,
-                last,
-                step,
-            } => {
-                let now = match self.scopes.get(&name) {
-                    Some(Value::Terms(terms)) => terms.v[0] + step,
-                    _ => return self.fail(span, format!("`{name}` is no number any more")),
-                };
-                self.scopes.local(name, Value::Terms(Terms::number(now)));
-                self.jump(body);
-                !past(now, last, step)
-            }
-        };
-        if !again {
-            self.flow.pop();
-            self.jump(behind);
-        }
-        Ok(())
-    }
-
-    /// Takes tokens to the end of the statement that went wrong.
-    pub(super) fn resynchronise(&mut self) {
-        self.hold = 0;
-        self.raw_names = false;
-        loop {
-            let token: Token = self.peek();
-            if token.kind == Kind::End {
-                break;
-            }
-            let closes = token.is("}") && self.braces <= 1;
-            let begins = self.braces == 0
-                && token
-                    .word()
-                    .is_some_and(|word| super::STATEMENTS.contains(&&**word));
-            if begins {
-                break;
-            }
-            self.next();
-            if closes {
-                break;
-            }
-        }
-        self.braces = 0;
-    }
-}
-
-fn past(value: f64, last: f64, step: f64) -> bool {
-    if step > 0.0 {
-        value > last + TOLERANCE
-    } else {
-        value < last - TOLERANCE
     }
 }
 

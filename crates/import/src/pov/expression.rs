@@ -3,64 +3,12 @@
 use std::rc::Rc;
 
 use octray_math::DVec3;
-use octray_scene::{Color, srgb_to_linear};
 
+use super::color::is_color_word;
 use super::lexer::{Kind, Token};
+use super::operators::{CONDITIONAL, PRODUCT, SUM, apply, level, truth};
 use super::reader::{Parsed, Reader};
 use super::value::{Terms, Value};
-
-/// How tightly operators bind; an item of an object reads from `SUM` on, so that `<` after it
-/// begins the next vector and compares nothing.
-const CONDITIONAL: u8 = 0;
-const SUM: u8 = 4;
-const PRODUCT: u8 = 5;
-
-/// What counts as equal when numbers are compared, as in POV-Ray.
-const TOLERANCE: f64 = 1e-10;
-
-fn level(sign: &str) -> Option<u8> {
-    Some(match sign {
-        "?" => CONDITIONAL,
-        "|" => 1,
-        "&" => 2,
-        "<" | ">" | "<=" | ">=" | "=" | "!=" => 3,
-        "+" | "-" => SUM,
-        "*" | "/" => PRODUCT,
-        "^" => 6,
-        _ => return None,
-    })
-}
-
-fn truth(value: bool) -> f64 {
-    f64::from(u8::from(value))
-}
-
-fn apply(sign: &str, a: Terms, b: Terms) -> Terms {
-    match sign {
-        "+" => a.zip(b, |x, y| x + y),
-        "-" => a.zip(b, |x, y| x - y),
-        "*" => a.zip(b, |x, y| x * y),
-        "/" => a.zip(b, |x, y| x / y),
-        "^" => a.zip(b, libm::pow),
-        "=" => Terms::number(truth(
-            a.zip(b, |x, y| truth((x - y).abs() > TOLERANCE)).v == [0.0; 5],
-        )),
-        "!=" => Terms::number(truth(
-            a.zip(b, |x, y| truth((x - y).abs() > TOLERANCE)).v != [0.0; 5],
-        )),
-        _ => {
-            let (x, y) = (a.v[0], b.v[0]);
-            Terms::number(truth(match sign {
-                "<" => x < y - TOLERANCE,
-                ">" => x > y + TOLERANCE,
-                "<=" => x <= y + TOLERANCE,
-                ">=" => x >= y - TOLERANCE,
-                "&" => x != 0.0 && y != 0.0,
-                _ => x != 0.0 || y != 0.0,
-            }))
-        }
-    }
-}
 
 impl Reader<'_> {
     /// An expression with all operators, as between brackets.
@@ -359,86 +307,10 @@ const CONSTANTS: [&str; 25] = [
     "image_height",
 ];
 
-/// Words that begin a colour.
-pub(super) fn is_color_word(word: &str) -> bool {
-    matches!(
-        word,
-        "color"
-            | "colour"
-            | "rgb"
-            | "rgbf"
-            | "rgbt"
-            | "rgbft"
-            | "srgb"
-            | "srgbf"
-            | "srgbt"
-            | "srgbft"
-            | "red"
-            | "green"
-            | "blue"
-            | "filter"
-            | "transmit"
-    )
-}
-
 fn starts_value(token: &Token) -> bool {
     match &token.kind {
         Kind::Number(_) | Kind::Word(_) => true,
         Kind::Sign(sign) => matches!(*sign, "(" | "-" | "+" | "!"),
         _ => false,
     }
-}
-
-impl Reader<'_> {
-    /// A colour: keywords with numbers, a vector, a declared colour, or an expression of these.
-    pub(super) fn color(&mut self) -> Parsed<Color> {
-        if !self.eat_word("color") {
-            self.eat_word("colour");
-        }
-        let word = self.peek_word();
-        let mut color = match word.as_deref() {
-            Some(
-                key @ ("rgb" | "rgbf" | "rgbt" | "rgbft" | "srgb" | "srgbf" | "srgbt" | "srgbft"),
-            ) => {
-                self.next();
-                let terms = self.terms()?;
-                arranged(key, terms)
-            }
-            Some("red" | "green" | "blue" | "filter" | "transmit") => Color::default(),
-            _ => self.terms()?.to_color(),
-        };
-        while let Some(word) = self.peek_word() {
-            let slot = match &*word {
-                "red" => &mut color.rgb.x,
-                "green" => &mut color.rgb.y,
-                "blue" => &mut color.rgb.z,
-                "filter" => &mut color.filter,
-                "transmit" => &mut color.transmit,
-                _ => break,
-            };
-            self.next();
-            *slot = self.float()?;
-        }
-        Ok(color)
-    }
-}
-
-/// The numbers behind `rgb`, `rgbf`, ... as a colour.
-fn arranged(key: &str, terms: Terms) -> Color {
-    let linear = !key.starts_with('s');
-    let key = key.trim_start_matches('s');
-    let v = terms.promoted(key.len()).v;
-    let mut color = Color::rgb(v[0], v[1], v[2]);
-    match key {
-        "rgbf" => color.filter = v[3],
-        "rgbt" => color.transmit = v[3],
-        "rgbft" => (color.filter, color.transmit) = (v[3], v[4]),
-        // A declared colour keeps what it lets through.
-        _ if terms.count == 5 => (color.filter, color.transmit) = (v[3], v[4]),
-        _ => {}
-    }
-    if !linear {
-        color.rgb = DVec3::from_array(color.rgb.to_array().map(srgb_to_linear));
-    }
-    color
 }

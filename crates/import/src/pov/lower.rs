@@ -5,21 +5,21 @@ use std::rc::Rc;
 
 use octray_geometry::{CornerAttribute, MaterialId, Sheet, Solid, TriangleMesh};
 use octray_math::{DAffine3, DVec3};
-use octray_scene::{Interior, Material, Object, Pigment, SceneBuilder};
+use octray_scene::{Interior, Object, SceneBuilder};
 
 use super::object::{Geometry, MeshDef, ObjectDef, Operation};
-use super::texture::{Layer, Texture};
+use super::texture::Texture;
 use crate::{Diagnostics, Span};
 
 /// What a part takes over from the objects that it is in.
 #[derive(Clone)]
-struct Context {
+pub(super) struct Context {
     /// World from the frame of the part's parent.
     world: DAffine3,
     /// The texture in force, and world from its frame.
-    texture: Rc<Texture>,
-    texture_world: DAffine3,
-    interior: Option<Interior>,
+    pub(super) texture: Rc<Texture>,
+    pub(super) texture_world: DAffine3,
+    pub(super) interior: Option<Interior>,
     no_shadow: bool,
     /// In world coordinates.
     clips: Vec<Solid>,
@@ -37,10 +37,10 @@ struct Batch {
 
 pub(super) struct Lowering<'a> {
     diagnostics: &'a mut Diagnostics,
-    builder: &'a mut SceneBuilder,
+    pub(super) builder: &'a mut SceneBuilder,
     default_texture: Rc<Texture>,
     /// By what a material says, spelled out.
-    materials: BTreeMap<String, MaterialId>,
+    pub(super) materials: BTreeMap<String, MaterialId>,
     triangles: BTreeMap<(MaterialId, bool), Batch>,
     warned: std::collections::BTreeSet<(u32, usize, &'static str)>,
 }
@@ -61,7 +61,7 @@ impl<'a> Lowering<'a> {
         }
     }
 
-    fn warn(&mut self, span: Span, message: &'static str) {
+    pub(super) fn warn(&mut self, span: Span, message: &'static str) {
         if self.warned.insert((span.source.0, span.start, message)) {
             self.diagnostics.warning(span, message);
         }
@@ -325,9 +325,11 @@ impl<'a> Lowering<'a> {
             Geometry::Operation(operation, children) => {
                 let solids = children
                     .iter()
-                    .filter_map(|child| self.operand(child, frame, context));
+                    .filter(|child| !matches!(child.geometry, Geometry::Light(_)))
+                    .map(|child| self.operand(child, frame, context))
+                    // What cannot be an operand counts as empty.
+                    .map(|operand| operand.unwrap_or_else(Solid::empty));
                 let solids: Vec<Solid> = solids.collect();
-                // A part that is left out of an intersection bounds nothing.
                 Some(match operation {
                     Operation::Union | Operation::Merge => Solid::union(solids),
                     Operation::Intersection => Solid::intersection(solids),
@@ -358,48 +360,4 @@ impl<'a> Lowering<'a> {
             }
         }
     }
-
-    /// The material of a context; one for all contexts that look the same.
-    fn material(&mut self, context: &Context, span: Span) -> MaterialId {
-        if context.texture.layers.len() > 1 {
-            self.warn(
-                span,
-                "layered textures are not supported: the highest opaque layer is taken",
-            );
-        }
-        let layer = shown_layer(&context.texture.layers);
-        let inverse = context.texture_world.inverse();
-        let mut interior = context.interior.unwrap_or_default();
-        if let (None, Some(ior)) = (context.interior, layer.finish.ior)
-            && ior > 0.0
-        {
-            interior.ior = ior;
-        }
-        let name = context.texture.name.as_deref();
-        let material = Material {
-            name: name.unwrap_or("texture").to_owned(),
-            pigment: match &layer.pigment {
-                uniform @ Pigment::Uniform(_) => uniform.clone(),
-                pattern => pattern.transformed(&inverse),
-            },
-            finish: layer.finish.terms,
-            interior,
-        };
-        let key = format!("{material:?}");
-        if let Some(id) = self.materials.get(&key) {
-            return *id;
-        }
-        let id = self.builder.add_material(material);
-        self.materials.insert(key, id);
-        id
-    }
-}
-
-/// The highest layer that hides those below, or the lowest.
-fn shown_layer(layers: &[Layer]) -> &Layer {
-    layers
-        .iter()
-        .rev()
-        .find(|layer| !layer.pigment.is_transparent())
-        .unwrap_or(&layers[0])
 }

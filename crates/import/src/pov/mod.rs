@@ -12,6 +12,7 @@
 //! Semantics: the reference of POV-Ray 3.7 (<https://www.povray.org/documentation/3.7.0/>).
 
 mod camera;
+mod color;
 mod color_map;
 mod declare;
 mod directives;
@@ -22,10 +23,13 @@ mod functions;
 mod include;
 mod lexer;
 mod light;
+mod loops;
 mod lower;
 mod macros;
+mod materials;
 mod meshes;
 mod object;
+mod operators;
 mod pigment;
 mod primitives;
 mod profile;

@@ -231,13 +231,22 @@ impl Reader<'_> {
         if let Geometry::Operation(_, children) = &mut object.geometry
             && OBJECTS.contains(&&*word)
         {
-            children.extend(self.object()?);
+            // An object that is left out is an empty one: it removes nothing, and an intersection
+            // with it, or what is left of it, is nothing.
+            let child = self.object()?.unwrap_or_else(|| {
+                let nothing = Geometry::Operation(Operation::Union, Vec::new());
+                Rc::new(ObjectDef::new(nothing, token.span))
+            });
+            children.push(child);
             return Ok(());
         }
         match &*word {
             "texture" => {
                 if let Value::Texture(texture) = self.texture_value()? {
-                    object.texture = Some(texture);
+                    object.texture = Some(match object.texture.take() {
+                        Some(below) => below.under(&texture),
+                        None => texture,
+                    });
                 }
             }
             "pigment" | "finish" | "normal" => {

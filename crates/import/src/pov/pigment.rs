@@ -151,7 +151,7 @@ impl Reader<'_> {
             let is_color = match &token.kind {
                 Kind::Sign("<") => true,
                 Kind::Word(word) => {
-                    super::expression::is_color_word(word)
+                    super::color::is_color_word(word)
                         || &**word == "pigment"
                         || matches!(
                             self.scopes.get(word),

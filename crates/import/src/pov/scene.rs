@@ -6,7 +6,7 @@ use octray_math::DVec3;
 use octray_scene::{Encoding, Pigment};
 
 use super::camera::CameraState;
-use super::lexer::Kind;
+use super::lexer::{Kind, Token};
 use super::object::{OBJECTS, ObjectDef};
 use super::reader::{Parsed, Reader};
 use super::value::Value;
@@ -41,6 +41,31 @@ impl Reader<'_> {
                 self.resynchronise();
             }
         }
+    }
+
+    /// Takes tokens to the end of the statement that went wrong.
+    fn resynchronise(&mut self) {
+        self.hold = 0;
+        self.raw_names = false;
+        loop {
+            let token: Token = self.peek();
+            if token.kind == Kind::End {
+                break;
+            }
+            let closes = token.is("}") && self.braces <= 1;
+            let begins = self.braces == 0
+                && token
+                    .word()
+                    .is_some_and(|word| super::STATEMENTS.contains(&&**word));
+            if begins {
+                break;
+            }
+            self.next();
+            if closes {
+                break;
+            }
+        }
+        self.braces = 0;
     }
 
     fn statement(&mut self) -> Parsed<()> {

@@ -42,6 +42,15 @@ impl Texture {
         &self.layers[0]
     }
 
+    /// This texture with another one over it.
+    pub(super) fn under(&self, other: &Self) -> Rc<Self> {
+        let layers = self.layers.iter().chain(&other.layers);
+        Rc::new(Self {
+            name: None,
+            layers: layers.cloned().collect(),
+        })
+    }
+
     /// The same texture after what it is on was moved.
     pub(super) fn transformed(self: &Rc<Self>, map: &DAffine3) -> Rc<Self> {
         let uniform = |layer: &Layer| matches!(layer.pigment, Pigment::Uniform(_));
