@@ -28,8 +28,8 @@ fn pictures_agree_with_pov_ray() {
     for (name, most) in [
         ("balls_s2.nff", 0.0005),
         ("balls.nff", 0.001),
-        // What is reflected in POV-Ray's glass triangles has no inside.
-        ("gears_s2.nff", 0.02),
+        // POV-Ray's glass triangles each have an inside of their own, ours share one.
+        ("gears_s2.nff", 0.01),
         // Two where the highlight's amount is not in the file.
         ("mount_s2.nff", 0.002),
         ("rings_s2.nff", 0.01),

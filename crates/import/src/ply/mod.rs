@@ -4,6 +4,7 @@
 //! with any types and in any order; other elements and properties are passed over. Format:
 //! Greg Turk, "The PLY Polygon File Format", 1994.
 
+mod color;
 mod header;
 mod rows;
 mod table;

@@ -1,8 +1,8 @@
 //! The elements of a PLY file that make a mesh.
 
 use octray_math::{DVec2, DVec3};
-use octray_scene::srgb_to_linear;
 
+use super::color::color_columns;
 use super::header::{Element, Header, Kind};
 use super::rows::{Body, Row};
 use crate::budget::Budget;
@@ -283,50 +283,13 @@ impl Reader<'_> {
 }
 
 /// The columns of these names, if all are there.
-fn columns<const N: usize>(element: &Element, names: [&[&str]; N]) -> Option<[usize; N]> {
+pub(super) fn columns<const N: usize>(
+    element: &Element,
+    names: [&[&str]; N],
+) -> Option<[usize; N]> {
     let found = names.map(|names| element.column(names));
     found
         .iter()
         .all(Option::is_some)
         .then(|| found.map(Option::unwrap_or_default))
-}
-
-/// Where a row has its colour.
-#[derive(Clone, Copy)]
-struct ColorColumns {
-    columns: [usize; 3],
-    /// Integers up to this are sRGB-encoded; floats (`None`) are linear.
-    most: Option<f64>,
-}
-
-fn color_columns(element: &Element) -> Option<ColorColumns> {
-    let columns = columns(
-        element,
-        [
-            &["red", "diffuse_red", "r"],
-            &["green", "diffuse_green", "g"],
-            &["blue", "diffuse_blue", "b"],
-        ],
-    )?;
-    let most = match element.properties[columns[0]].kind {
-        Kind::One(scalar) if scalar.is_integer() => {
-            Some(if scalar.size() == 1 { 255.0 } else { 65535.0 })
-        }
-        _ => None,
-    };
-    Some(ColorColumns { columns, most })
-}
-
-impl ColorColumns {
-    fn color(&self, row: &Row) -> DVec3 {
-        let part = |column: usize| {
-            let value = row.number(column);
-            let value = match self.most {
-                Some(most) => srgb_to_linear((value / most).clamp(0.0, 1.0)),
-                None => value.clamp(0.0, 1.0),
-            };
-            if value.is_finite() { value } else { 0.0 }
-        };
-        DVec3::from_array(self.columns.map(part))
-    }
 }
