@@ -53,7 +53,7 @@ def test_the_shell_examples_succeed(command: str, tmp_path: Path) -> None:
     assert program == "octray"
     (tmp_path / "scenes").symlink_to(ROOT / "scenes")
     octray = Path(sys.executable).with_name("octray")
-    done = subprocess.run(  # noqa: S603 - our own text
+    done = subprocess.run(
         [octray, *arguments],
         cwd=tmp_path,
         env={**os.environ, "NO_COLOR": "1"},
