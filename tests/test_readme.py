@@ -21,9 +21,7 @@ def blocks(language: str) -> list[str]:
     return re.findall(rf"^```{language}\n(.*?)^```", README, re.MULTILINE | re.DOTALL)
 
 
-def test_the_python_examples_run_in_order(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_the_python_examples_run_in_order(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
     names: dict[str, object] = {}
     printed = io.StringIO()
@@ -53,7 +51,7 @@ def test_the_shell_examples_succeed(command: str, tmp_path: Path) -> None:
     assert program == "octray"
     (tmp_path / "scenes").symlink_to(ROOT / "scenes")
     octray = Path(sys.executable).with_name("octray")
-    done = subprocess.run(  # noqa: S603 - our own text
+    done = subprocess.run(
         [octray, *arguments],
         cwd=tmp_path,
         env={**os.environ, "NO_COLOR": "1"},

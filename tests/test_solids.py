@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 import pytest
@@ -186,7 +186,7 @@ def test_open_meshes_are_refused_as_solids() -> None:
         (lambda: octray.mesh_solid([[0, 0, math.nan]], [[0, 0, 0]]), "not finite"),
         (lambda: octray.mesh_solid([], []), "no triangles"),
         (lambda: octray.polyhedron([[0, 0, 0]], [[0, 1, 2]]), "face 0 uses a corner"),
-        (lambda: octray.polyhedron([[0, 0, 0]], 3), "lists of vertex indices"),
+        (lambda: octray.polyhedron([[0, 0, 0]], cast("Any", 3)), "lists of vertex indices"),
     ],
 )
 def test_what_is_no_solid_is_refused_with_a_reason(

@@ -2,6 +2,7 @@
 //! `octray` crate, converts results. Nothing is decided here.
 
 mod arrays;
+mod background;
 mod camera;
 mod convert;
 mod describe;
@@ -12,6 +13,7 @@ mod light;
 mod load;
 mod material;
 mod mesh;
+mod objects;
 mod pool;
 mod queries;
 mod render;

@@ -102,12 +102,18 @@ pub(crate) struct Hits {
     world: Arc<World>,
     rays: Rays,
     hits: Vec<Hit>,
-    surface: PyOnceLock<(Py<PyArrayDyn<f64>>, Py<PyArrayDyn<f64>>)>,
+    surface: PyOnceLock<Surface>,
+}
+
+/// What is computed only when someone asks, shape (..., 3) each.
+struct Surface {
+    positions: Py<PyArrayDyn<f64>>,
+    normals: Py<PyArrayDyn<f64>>,
 }
 
 impl Hits {
     /// Positions and normals, computed when either is first asked for; NaN where there is no hit.
-    fn surface(&self, py: Python<'_>) -> PyResult<&(Py<PyArrayDyn<f64>>, Py<PyArrayDyn<f64>>)> {
+    fn surface(&self, py: Python<'_>) -> PyResult<&Surface> {
         self.surface.get_or_try_init(py, || {
             let (positions, normals): (Vec<[f64; 3]>, Vec<[f64; 3]>) = py.detach(|| {
                 let nowhere = [f64::NAN; 3];
@@ -128,7 +134,10 @@ impl Hits {
                 let flat = rows.into_flattened().into_pyarray(py);
                 Ok(flat.reshape(shape.as_slice())?.unbind())
             };
-            Ok((array(positions)?, array(normals)?))
+            Ok(Surface {
+                positions: array(positions)?,
+                normals: array(normals)?,
+            })
         })
     }
 
@@ -172,13 +181,13 @@ impl Hits {
     /// Unit normals that point out of the solid, shape (..., 3); NaN for a miss.
     #[getter]
     fn normal<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
-        Ok(self.surface(py)?.1.bind(py).clone())
+        Ok(self.surface(py)?.normals.bind(py).clone())
     }
 
     /// Points of the surfaces, shape (..., 3); NaN for a miss.
     #[getter]
     fn position<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
-        Ok(self.surface(py)?.0.bind(py).clone())
+        Ok(self.surface(py)?.positions.bind(py).clone())
     }
 
     /// Whether the ray met something, shape of `t`.

@@ -3,23 +3,20 @@
 use numpy::PyArrayDyn;
 use octray::geometry::Sheet;
 use octray::import::dress;
-use octray::math::DVec3;
-use octray::scene::{
-    self, Background, Color, ColorStop, MaterialId, Object, SceneBuilder, SceneError, Settings,
-    Shape,
-};
+use octray::scene::{self, SceneBuilder, SceneError, Settings, Shape};
 use octray::world::Accel;
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
+use crate::background;
 use crate::camera::Camera;
-use crate::convert::{Triple, color, number_or_color, vector};
+use crate::convert::{Triple, vector};
 use crate::diagnostics::{Diagnostic, invalid_scene};
 use crate::image::Image;
 use crate::light::Light;
-use crate::material::material;
 use crate::mesh;
+use crate::objects::Common;
 use crate::queries::{self, Hits};
 use crate::render::{self, Request};
 use crate::solid::Solid;
@@ -55,6 +52,11 @@ impl Scene {
         Ok(completed(plain, !self.imported))
     }
 
+    /// The scene as it stands, not validated.
+    pub(crate) const fn so_far(&self) -> &scene::Scene {
+        self.builder.so_far()
+    }
+
     pub(crate) fn settings(&self) -> &Settings {
         self.builder.so_far().settings()
     }
@@ -75,87 +77,12 @@ impl Scene {
         self.prepared = Some(prepared);
     }
 
-    fn material_id(&mut self, wanted: scene::Material) -> MaterialId {
-        let known = self.builder.so_far().materials();
-        match known.iter().position(|m| *m == wanted) {
-            Some(index) => MaterialId(index as u32),
-            None => self.builder.add_material(wanted),
-        }
-    }
-
     /// The builder, for a change that a world made before does not know of.
-    fn changed(&mut self) -> &mut SceneBuilder {
+    pub(crate) fn changed(&mut self) -> &mut SceneBuilder {
         self.revision += 1;
         self.prepared = None;
         &mut self.builder
     }
-
-    fn add_shape(
-        &mut self,
-        shape: Shape,
-        name: &str,
-        material: MaterialId,
-        common: &Common<'_, '_>,
-    ) -> u32 {
-        let name = match common.name.unwrap_or(name) {
-            "" => format!("object {}", self.builder.so_far().objects().len()),
-            name => name.to_owned(),
-        };
-        let object = Object {
-            name,
-            shape,
-            material,
-            priority: common.priority,
-            casts_shadows: common.shadows,
-        };
-        self.changed().add_object(object).0
-    }
-
-    /// Adds a mesh that stands alone (`look` is `None`) or in a file with materials of its own.
-    fn adopt(
-        &mut self,
-        shape: &Shape,
-        name: &str,
-        look: Option<(&[scene::Material], MaterialId)>,
-        filled: bool,
-        common: &Common<'_, '_>,
-    ) -> PyResult<u32> {
-        let placed = mesh::Placed::of(shape).ok_or_else(|| {
-            PyValueError::new_err(format!(
-                "`{name}` is no mesh; octray.load reads files of solids"
-            ))
-        })?;
-        let given = common.material.map(|m| self.wanted_material(Some(m)));
-        let (placed, material) = match (given.transpose()?, look) {
-            (Some(id), _) => (placed.with_ids(|_| id)?, id),
-            (None, Some((materials, own))) => {
-                let ids: Vec<MaterialId> = materials
-                    .iter()
-                    .map(|m| self.material_id(m.clone()))
-                    .collect();
-                let new = |old: MaterialId| ids[old.0 as usize];
-                (placed.with_ids(new)?, new(own))
-            }
-            (None, None) => (placed, self.wanted_material(None)?),
-        };
-        Ok(self.add_shape(placed.shape(filled)?, name, material, common))
-    }
-
-    fn wanted_material(&mut self, given: Option<&Bound<'_, PyAny>>) -> PyResult<MaterialId> {
-        let wanted = match given {
-            Some(object) => material(object)?,
-            None => dress::default_material(),
-        };
-        Ok(self.material_id(wanted))
-    }
-}
-
-/// What is said about an object of any kind.
-struct Common<'a, 'py> {
-    name: Option<&'a str>,
-    material: Option<&'a Bound<'py, PyAny>>,
-    priority: i32,
-    shadows: bool,
 }
 
 #[pymethods]
@@ -206,7 +133,6 @@ impl Scene {
     #[pyo3(signature = (
         mesh, *, name = None, material = None, solid = false, priority = 0, shadows = true
     ))]
-    #[expect(clippy::too_many_arguments, reason = "all but the first by keyword")]
     fn add_mesh(
         &mut self,
         mesh: &Bound<'_, PyAny>,
@@ -264,8 +190,7 @@ impl Scene {
 
     /// Puts a camera where it sees everything, from the front and a little from above.
     fn view_all(&mut self) -> PyResult<()> {
-        let scene = self.builder.so_far();
-        let camera = dress::view_all(&scene.bounds(), scene.settings().up).ok_or_else(|| {
+        let camera = dress::view_scene(self.builder.so_far()).ok_or_else(|| {
             PyValueError::new_err("there is nothing bounded in the scene to look at")
         })?;
         self.set_camera(&Camera::new(camera));
@@ -282,34 +207,8 @@ impl Scene {
 
     #[setter]
     fn set_background(&mut self, background: &Bound<'_, PyAny>) -> PyResult<()> {
-        let finite = |c: DVec3| {
-            if c.is_finite() {
-                Ok(c)
-            } else {
-                Err(PyValueError::new_err("background: colours must be finite"))
-            }
-        };
-        let background = match number_or_color("background", background).and_then(finite) {
-            Ok(rgb) => Background::Uniform(rgb),
-            Err(error) => {
-                let colors: Option<Vec<DVec3>> = background.try_iter().ok().and_then(|items| {
-                    items
-                        .map(|item| color("background", &item?).and_then(finite))
-                        .collect::<PyResult<_>>()
-                        .ok()
-                });
-                let stops = colors.filter(|c| c.len() >= 2).ok_or(error)?;
-                let last = (stops.len() - 1) as f64;
-                let stop = |(i, c): (usize, &DVec3)| ColorStop {
-                    position: i as f64 / last,
-                    color: Color::rgb(c.x, c.y, c.z),
-                };
-                Background::Gradient {
-                    axis: self.builder.so_far().settings().up,
-                    map: stops.iter().enumerate().map(stop).collect(),
-                }
-            }
-        };
+        let up = self.settings().up;
+        let background = background::background(background, up)?;
         self.changed().set_background(background);
         Ok(())
     }

@@ -81,7 +81,7 @@ pub(crate) fn completed(scene: scene::Scene, dressed: bool) -> scene::Scene {
         (*scene.background() != scene::Background::default()).then(|| scene.background().clone());
     let up = scene.settings().up;
     let mut scene = scene;
-    if scene.camera().is_none() && dress::view_all(&scene.bounds(), up).is_none() {
+    if scene.camera().is_none() && dress::view_scene(&scene).is_none() {
         // Nothing to look at, or nothing bounded: look at the middle of the world.
         let middle = Aabb::new(DVec3::splat(-1.0), DVec3::ONE);
         if let Some(camera) = dress::view_all(&middle, up) {
