@@ -27,6 +27,7 @@ fn cells<'py>(py: Python<'py>, stats: &CellTreeStats) -> PyResult<Bound<'py, PyD
     dict.set_item("depth", stats.depth)?;
     dict.set_item("bytes", stats.bytes)?;
     dict.set_item("stopped_by_depth", stats.stopped_by_depth)?;
+    dict.set_item("stopped_by_size", stats.stopped_by_size)?;
     dict.set_item("stopped_by_memory", stats.stopped_by_memory)?;
     Ok(dict)
 }
