@@ -123,7 +123,8 @@ impl Sheets {
         let mut cost = WalkCost::default();
         self.triangles
             .closest(&line.ray, span, &mut cost, |triangle, hit, end| {
-                if departed == Some(triangle) || hit.t <= line.origin {
+                let left = |from| self.triangles.are_coplanar(from, triangle);
+                if hit.t <= line.origin || departed.is_some_and(left) {
                     return end;
                 }
                 visit(&SheetHit {

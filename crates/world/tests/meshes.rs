@@ -89,6 +89,38 @@ fn frame() -> impl Strategy<Value = DAffine3> {
     })
 }
 
+#[test]
+fn a_ray_that_leaves_a_doubled_mesh_does_not_meet_its_twin() {
+    let mesh = || {
+        Sheet::mesh(cube(3))
+            .transform(DAffine3::from_rotation_x(0.7))
+            .expect("invertible")
+    };
+    let scene = scene(vec![(None, Some(mesh())), (None, Some(mesh()))]);
+    let world = world(&scene, Accel::Auto);
+    let mut hits = Vec::new();
+    for i in 0..5000 {
+        let at = f64::from(i) * 2e-4 - 0.5;
+        let query = RayQuery::new(Ray::new(
+            DVec3::new(4.0, at, 0.3 * at),
+            DVec3::new(-1.0, 0.1, 0.1 * at),
+        ));
+        world.closest(&[query], &mut hits, &mut Counters::default());
+        let surface = world.interact(&query, &hits[0]);
+        assert!(surface.entering);
+        let away = RayQuery {
+            ray: Ray::new(
+                surface.position,
+                surface.normal * 0.3 + DVec3::new(0.0, 1.0, 3.0 * at),
+            ),
+            departure: hits[0].departure(true),
+            ..query
+        };
+        world.closest(&[away], &mut hits, &mut Counters::default());
+        assert!(hits[0].is_miss(), "{at}: t = {}", hits[0].t);
+    }
+}
+
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(60))]
 

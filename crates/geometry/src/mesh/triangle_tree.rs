@@ -63,6 +63,20 @@ impl TriangleTree {
         [p[a as usize], p[b as usize], p[c as usize]]
     }
 
+    /// Whether two triangles lie in one plane, exactly: a line that leaves one for good cannot cross
+    /// the other. Triangles that stand in a file twice do, and so do overlapping ones of one level.
+    #[must_use]
+    pub fn are_coplanar(&self, a: u32, b: u32) -> bool {
+        let coord = |p: DVec3| robust::Coord3D {
+            x: p.x,
+            y: p.y,
+            z: p.z,
+        };
+        let [p, q, r] = self.corners(a).map(coord);
+        let on_plane = |s: DVec3| robust::orient3d(p, q, r, coord(s)) == 0.0;
+        a == b || self.corners(b).into_iter().all(on_plane)
+    }
+
     fn bounds(&self, triangle: u32) -> Aabb {
         Aabb::from_points(self.corners(triangle))
     }
