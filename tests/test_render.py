@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import _thread
+import signal
 import struct
 import threading
 import time
@@ -15,6 +16,7 @@ import pytest
 import octray
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
     from pathlib import Path
 
 
@@ -186,6 +188,15 @@ def test_previews_come_coarse_to_fine() -> None:
     assert all(not p.complete and p.size == (64, 48) for p in previews)
 
 
+@pytest.fixture
+def listening() -> Iterator[None]:
+    """Ctrl-C counts, also where whoever started the tests has switched it off."""
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    yield
+    signal.signal(signal.SIGINT, before)
+
+
+@pytest.mark.usefixtures("listening")
 def test_an_interruption_raises_or_returns_what_there_is() -> None:
     scene = slow_scene()
     scene.prepare()
