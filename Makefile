@@ -19,7 +19,7 @@ help: ## Print this list
 
 demo: .venv/installed ## Set up and render the demo scene to out/workbench.png
 	@mkdir -p $(OUT)
-	$(BIN)/octray render $(DEMO) -o $(OUT)/workbench.png
+	$(BIN)/octray render $(DEMO) -o $(OUT)/workbench.png --size 1280x720 --spp 4
 
 test: test-rust test-python ## Set up and run all tests, Rust and Python
 

@@ -243,3 +243,31 @@ def test_the_report_counts_rays() -> None:
     assert 0 < report["hits"]["primary"] < 600
     assert report["tests_per_ray"]["triangles"] == 0
     assert report["complete"]
+
+
+def test_limits_of_the_octree_hold_are_reported_and_do_not_show() -> None:
+    def picture(
+        tree_depth: int | None = None, tree_memory: int | None = None
+    ) -> tuple[octray.Image, dict[str, Any]]:
+        scene = octray.Scene()
+        holes = [
+            octray.cylinder(r=0.3, h=4).translate(x=i, y=j) for i in range(6) for j in range(6)
+        ]
+        scene.add(octray.box((7, 7, 1)).translate(x=2.5, y=2.5) - octray.union(holes))
+        scene.prepare(tree_depth=tree_depth, tree_memory=tree_memory)
+        image = scene.render(size=(48, 36))
+        return image, image.report["trees"]["cells"]
+
+    free, cells = picture()
+    assert cells["depth"] > 2
+    assert cells["stopped_by_depth"] == 0
+    shallow, cells = picture(tree_depth=2)
+    assert cells["depth"] == 2
+    assert cells["stopped_by_depth"] > 0
+    small, cells = picture(tree_memory=5_000)
+    assert cells["stopped_by_memory"]
+    assert cells["bytes"] <= 5_000
+    assert free.equals(shallow)
+    assert free.equals(small)
+    with pytest.raises(ValueError, match="tree_depth"):
+        octray.Scene().prepare(tree_depth=22)

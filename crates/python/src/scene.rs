@@ -20,7 +20,7 @@ use crate::objects::Common;
 use crate::queries::{self, Hits};
 use crate::render::{self, Request};
 use crate::solid::Solid;
-use crate::world::{Prepared, completed, prepared};
+use crate::world::{Prepared, completed, configured, prepare};
 
 /// Objects, lights, a camera and a background.
 #[pyclass(module = "octray")]
@@ -233,10 +233,19 @@ impl Scene {
         self.diagnostics.clone()
     }
 
-    /// Builds the trees now rather than with the first picture or query.
-    #[pyo3(signature = (*, accel = "auto", threads = None))]
-    fn prepare(slf: &Bound<'_, Self>, accel: &str, threads: Option<usize>) -> PyResult<()> {
-        prepared(slf, accel, threads).map(|_| ())
+    /// Builds the trees now rather than with the first picture or query, with other limits if these
+    /// are given: the deepest level of the solids' tree (0 to 21), and the bytes that a tree may take.
+    /// What does not fit is left undivided (a tree of triangles is refused), and reported.
+    #[pyo3(signature = (*, accel = "auto", threads = None, tree_depth = None, tree_memory = None))]
+    fn prepare(
+        slf: &Bound<'_, Self>,
+        accel: &str,
+        threads: Option<usize>,
+        tree_depth: Option<u32>,
+        tree_memory: Option<u64>,
+    ) -> PyResult<()> {
+        let config = configured(accel, tree_depth, tree_memory)?;
+        prepare(slf, config, threads).map(|_| ())
     }
 
     /// Renders a picture.

@@ -4,6 +4,7 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use octray::import::dress;
+use octray::math::MAX_DEPTH;
 use octray::math::{Aabb, DVec3};
 use octray::scene;
 use octray::world::{Accel, World, WorldConfig};
@@ -34,25 +35,58 @@ pub(crate) fn accel_named(name: &str) -> PyResult<Accel> {
     }
 }
 
+/// How to build, with the limits that are given: the deepest level of the solids' tree, and the bytes
+/// that each tree may take.
+pub(crate) fn configured(
+    accel: &str,
+    tree_depth: Option<u32>,
+    tree_memory: Option<u64>,
+) -> PyResult<WorldConfig> {
+    let mut config = WorldConfig {
+        accel: accel_named(accel)?,
+        ..WorldConfig::default()
+    };
+    if let Some(depth) = tree_depth {
+        if depth > MAX_DEPTH {
+            return Err(PyValueError::new_err(format!(
+                "tree_depth must be at most {MAX_DEPTH}, not {depth}"
+            )));
+        }
+        config.criteria.max_depth = depth;
+    }
+    if let Some(bytes) = tree_memory {
+        config.criteria.memory_limit = bytes;
+        config.triangles.memory_limit = bytes;
+    }
+    Ok(config)
+}
+
 /// The scene's world, made now unless it is still there from last time.
 pub(crate) fn prepared(
     scene: &Bound<'_, Scene>,
     accel: &str,
     threads: Option<usize>,
 ) -> PyResult<Prepared> {
+    let config = WorldConfig {
+        accel: accel_named(accel)?,
+        ..WorldConfig::default()
+    };
+    let known = scene.try_borrow()?.prepared(config.accel).cloned();
+    known.map_or_else(|| prepare(scene, config, threads), Ok)
+}
+
+/// The scene's world, made now and kept for the queries to come.
+pub(crate) fn prepare(
+    scene: &Bound<'_, Scene>,
+    config: WorldConfig,
+    threads: Option<usize>,
+) -> PyResult<Prepared> {
     let py = scene.py();
-    let accel = accel_named(accel)?;
+    let accel = config.accel;
     let pool = pool(threads)?;
     let (plain, revision) = {
         let scene = scene.try_borrow()?;
-        if let Some(known) = scene.prepared(accel) {
-            return Ok(known.clone());
-        }
         (scene.complete(py)?, scene.revision())
-    };
-    let config = WorldConfig {
-        accel,
-        ..WorldConfig::default()
     };
     let start = Instant::now();
     let world = task::run(py, move |_| {

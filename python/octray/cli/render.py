@@ -40,6 +40,18 @@ if TYPE_CHECKING:
     help="Octrees, or every surface for every ray: the same picture.",
 )
 @click.option(
+    "--tree-depth",
+    type=click.IntRange(0, 21),
+    metavar="N",
+    help="Deepest level of the octree over solids; 16 by default.",
+)
+@click.option(
+    "--tree-memory",
+    type=click.IntRange(min=0),
+    metavar="MIB",
+    help="Most memory of an octree in MiB; what does not fit stays undivided.",
+)
+@click.option(
     "-j",
     "--threads",
     type=click.IntRange(min=1),
@@ -149,7 +161,13 @@ class _Run:
         output = self.output = Output(options["output"], self.path)
         scene = self._load()
         with self._phase("build"):
-            scene.prepare(accel=options["accel"], threads=options["threads"])
+            memory = options["tree_memory"]
+            scene.prepare(
+                accel=options["accel"],
+                threads=options["threads"],
+                tree_depth=options["tree_depth"],
+                tree_memory=None if memory is None else memory << 20,
+            )
         image = self._trace(scene, output)
         self.report.add_rendering(image.report)
         if not image.complete:
