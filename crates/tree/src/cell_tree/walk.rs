@@ -26,22 +26,36 @@ struct Slabs {
 }
 
 impl Slabs {
+    /// The parameters at which the line is between `min` and `min + size` on one axis, grown by the
+    /// margin.
+    #[inline]
+    fn slab(&self, axis: usize, min: f64, size: f64) -> Interval {
+        let low = min - self.margin - self.origin[axis];
+        let high = min + size + self.margin - self.origin[axis];
+        if self.parallel[axis] {
+            if low > 0.0 || high < 0.0 {
+                return Interval::EMPTY;
+            }
+            return Interval::ALL;
+        }
+        let (a, b) = (low * self.inverse[axis], high * self.inverse[axis]);
+        Interval::new(a.min(b), a.max(b))
+    }
+
     /// The part of `within` inside the cube grown by the margin.
     fn clip(&self, min: DVec3, size: f64, within: Interval) -> Interval {
-        let mut span = within;
-        for axis in 0..3 {
-            let low = min[axis] - self.margin - self.origin[axis];
-            let high = min[axis] + size + self.margin - self.origin[axis];
-            if self.parallel[axis] {
-                if low > 0.0 || high < 0.0 {
-                    return Interval::EMPTY;
-                }
-                continue;
-            }
-            let (a, b) = (low * self.inverse[axis], high * self.inverse[axis]);
-            span = span.intersection(&Interval::new(a.min(b), a.max(b)));
-        }
-        span
+        (0..3).fold(within, |span, axis| {
+            span.intersection(&self.slab(axis, min[axis], size))
+        })
+    }
+
+    /// The slabs of a divided cell's lower and upper children on each axis: eight cubes of `size`
+    /// share six of them.
+    #[inline]
+    fn halves(&self, min: DVec3, size: f64) -> [[Interval; 2]; 3] {
+        std::array::from_fn(|axis| {
+            [min[axis], min[axis] + size].map(|low| self.slab(axis, low, size))
+        })
     }
 }
 
@@ -94,6 +108,7 @@ impl CellTree {
                 Node::Divided(block) => {
                     let size = cell.size * 0.5;
                     let children = &self.blocks[block as usize];
+                    let [x, y, z] = slabs.halves(cell.min, size);
                     // The farthest octant is pushed first.
                     for i in (0..8).rev() {
                         let octant = i ^ mirror;
@@ -101,14 +116,14 @@ impl CellTree {
                         if matches!(Node::decode(node), Node::Empty(_)) {
                             continue;
                         }
-                        let corner = DVec3::new(
-                            f64::from(octant & 1),
-                            f64::from(octant >> 1 & 1),
-                            f64::from(octant >> 2 & 1),
-                        );
-                        let min = cell.min + corner * size;
-                        let span = slabs.clip(min, size, cell.span);
+                        let upper = [octant & 1, octant >> 1 & 1, octant >> 2 & 1];
+                        let span = cell
+                            .span
+                            .intersection(&x[upper[0] as usize])
+                            .intersection(&y[upper[1] as usize])
+                            .intersection(&z[upper[2] as usize]);
                         if !span.is_empty() {
+                            let min = cell.min + DVec3::from_array(upper.map(f64::from)) * size;
                             stack.push(Waiting {
                                 node,
                                 min,
