@@ -12,7 +12,7 @@ camera {
   right -x * 16 / 9    // right-handed, as the parts were drawn
   sky z
   location <-8.6, -14.0, 8.2>
-  look_at <0.25, -0.25, 1.05>
+  look_at <0.2, -0.55, 0.85>
   angle 42
 }
 

@@ -1,13 +1,15 @@
 //! The databases' pictures as POV-Ray makes them from their own generators' output.
 
+mod corpus;
 mod spd;
 
+use corpus::corpus;
 use octray_render::{Image, RenderConfig, develop};
-use spd::{databases, rendered};
+use spd::rendered;
 
 /// Mean absolute difference of the channels, as a share of the whole range.
 fn difference(name: &str) -> Option<f64> {
-    let folder = databases()?;
+    let folder = corpus("spd")?;
     let reference = image::open(folder.join(name).with_extension("png")).expect("a picture");
     let reference = reference.to_rgb8();
     let config = RenderConfig {

@@ -4,16 +4,18 @@
 //! generations (primary rays and four bounces) give all his numbers to 1 %; four or six give up
 //! to 10 % fewer or more reflected rays.
 
+mod corpus;
 mod spd;
 
+use corpus::corpus;
 use octray_render::{RenderConfig, RenderStats};
-use spd::{databases, rendered};
+use spd::rendered;
 
 const GENERATIONS: u32 = 5;
 
 /// Published eye rays that hit something, reflected, refracted and shadow rays.
 fn check(name: &str, published: [u64; 4]) {
-    let Some(folder) = databases() else { return };
+    let Some(folder) = corpus("spd") else { return };
     let config = RenderConfig {
         size: Some((513, 513)),
         max_generations: Some(GENERATIONS),

@@ -2,27 +2,17 @@
 //!
 //! OpenSCAD's polyhedra are made throughout (`facets`), so that both show the same solid.
 
+mod corpus;
+
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
+use corpus::corpus;
 use octray_import::{Disk, Options, openscad};
 use octray_math::{Aabb, DVec3, Ray, transform};
 use octray_scene::Scene;
 use octray_world::{Counters, RayQuery, Region, World, WorldConfig};
-
-/// The folder of test files, or `None` (said on the console) where there is none.
-#[expect(clippy::print_stdout, reason = "a skipped test says so")]
-fn corpus(folder: &str) -> Option<PathBuf> {
-    let default = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data");
-    let root = std::env::var_os("OCTRAY_CORPUS").map_or(default, PathBuf::from);
-    let folder = root.join(folder);
-    if !folder.is_dir() {
-        println!("skipped: there is no {}", folder.display());
-        return None;
-    }
-    Some(folder)
-}
 
 /// The scene of a dump, with OpenSCAD's polyhedra; `None` if something in it is not supported.
 fn scene(path: &Path) -> Option<Scene> {
@@ -256,7 +246,6 @@ fn regression_dumps_have_the_silhouettes_of_openscad() {
 }
 
 #[test]
-#[ignore = "takes minutes"]
 fn slow_dumps_have_the_silhouettes_and_volumes_of_openscad() {
     if let Some(folder) = corpus("openscad/examples") {
         assert_eq!(compare_examples(&folder, is_slow), 2);

@@ -1,8 +1,11 @@
 //! Scenes of the POV-Ray distribution against the pictures that POV-Ray makes of them.
 
-use std::path::{Path, PathBuf};
+mod corpus;
+
+use std::path::Path;
 use std::sync::Arc;
 
+use corpus::corpus;
 use octray::import::{Disk, Options, pov};
 use octray::render::{Image, RenderConfig, develop, render};
 use octray::scene::View;
@@ -25,19 +28,6 @@ const SCENES: [(&str, f64, f64); 13] = [
     ("objects/polygon", 0.000, 100.0),
     ("objects/prism3a", 0.000, 100.0),
 ];
-
-/// The folder of test files, or `None` (said on the console) where there is none.
-#[expect(clippy::print_stdout, reason = "a skipped test says so")]
-fn corpus(folder: &str) -> Option<PathBuf> {
-    let default = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data");
-    let root = std::env::var_os("OCTRAY_CORPUS").map_or(default, PathBuf::from);
-    let folder = root.join(folder);
-    if !folder.is_dir() {
-        println!("skipped: there is no {}", folder.display());
-        return None;
-    }
-    Some(folder)
-}
 
 /// 8-bit pixels, row by row from the top.
 struct Picture {

@@ -1,5 +1,6 @@
 //! The world and its queries.
 
+use std::cell::Cell;
 use std::sync::{Arc, Mutex, PoisonError};
 
 use octray_geometry::FaceId;
@@ -257,10 +258,11 @@ impl World {
         let Some(line) = Line::new(query, self.center) else {
             return false;
         };
-        let mut found = false;
-        let mut visit = |s: f64, face: FaceId| {
-            found |= s < line.end && self.blocks(face);
-            if found {
+        let found = Cell::new(false);
+        // Returns the parameter beyond which nothing matters any more.
+        let visit = |s: f64, face: FaceId| {
+            found.set(found.get() || (s < line.end && self.blocks(face)));
+            if found.get() {
                 f64::NEG_INFINITY
             } else {
                 f64::INFINITY
@@ -268,21 +270,13 @@ impl World {
         };
         self.sheets
             .visit_line(&line, f64::INFINITY, counters, |hit| visit(hit.s, hit.face));
-        if !found {
-            let mut visit = |s: f64, face: FaceId| {
-                found |= s < line.end && self.blocks(face);
-                if found {
-                    f64::NEG_INFINITY
-                } else {
-                    f64::INFINITY
-                }
-            };
+        if !found.get() {
             self.solids
                 .sweep_line(&line, f64::INFINITY, scratch, counters, |i| {
                     visit(i.s, i.face)
                 });
         }
-        found
+        found.get()
     }
 
     /// Whether a face stops light.

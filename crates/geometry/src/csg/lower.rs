@@ -328,30 +328,6 @@ mod tests {
     use super::*;
     use crate::csg::{evaluate, faces};
 
-    fn value(surface: &Surface, p: DVec3) -> f64 {
-        match surface {
-            Surface::Plane { normal, offset } => normal.dot(p) - offset,
-            Surface::Quadric {
-                kind,
-                local_from_world,
-            } => {
-                let q = local_from_world.transform_point3(p);
-                match kind {
-                    Quadric::Sphere => q.length_squared() - 1.0,
-                    Quadric::Cylinder => q.x * q.x + q.y * q.y - 1.0,
-                    Quadric::Cone => q.x * q.x + q.y * q.y - q.z * q.z,
-                }
-            }
-            Surface::Torus {
-                minor,
-                local_from_world,
-            } => {
-                let q = local_from_world.transform_point3(p);
-                libm::hypot(libm::hypot(q.x, q.y) - 1.0, q.z) - minor
-            }
-        }
-    }
-
     fn contains(solid: &Solid, p: DVec3) -> bool {
         let mut lowering = Lowering::new(10.0);
         let lowered = lowering.lower(solid);
@@ -360,7 +336,8 @@ mod tests {
             Err(constant) => constant == Constant::True,
             Ok(code) => evaluate(code.words(), &|id: FaceId| {
                 let face = faces[id.0 as usize];
-                (value(&surfaces[face.surface.0 as usize], p) > 0.0) == face.inside_is_positive
+                (surfaces[face.surface.0 as usize].implicit_value(p) > 0.0)
+                    == face.inside_is_positive
             }),
         }
     }

@@ -185,30 +185,6 @@ mod tests {
         })
     }
 
-    fn value(surface: &Surface, p: DVec3) -> f64 {
-        match surface {
-            Surface::Plane { normal, offset } => normal.dot(p) - offset,
-            Surface::Quadric {
-                kind,
-                local_from_world,
-            } => {
-                let q = local_from_world.transform_point3(p);
-                match kind {
-                    Quadric::Sphere => q.length_squared() - 1.0,
-                    Quadric::Cylinder => q.x * q.x + q.y * q.y - 1.0,
-                    Quadric::Cone => q.x * q.x + q.y * q.y - q.z * q.z,
-                }
-            }
-            Surface::Torus {
-                minor,
-                local_from_world,
-            } => {
-                let q = local_from_world.transform_point3(p);
-                libm::hypot(libm::hypot(q.x, q.y) - 1.0, q.z) - minor
-            }
-        }
-    }
-
     proptest! {
         #![proptest_config(ProptestConfig::with_cases(4000))]
         #[test]
@@ -220,7 +196,7 @@ mod tests {
             let bounds = Aabb::new(center - half, center + half);
             let side = surface.classify(&bounds);
             for s in inside.into_iter().chain(Aabb::new(-DVec3::ONE, DVec3::ONE).corners()) {
-                let v = value(&surface, center + half * s);
+                let v = surface.implicit_value(center + half * s);
                 match side {
                     Side::Positive => prop_assert!(v > 0.0),
                     Side::Negative => prop_assert!(v < 0.0),
@@ -236,7 +212,7 @@ mod tests {
             let half = DVec3::splat(1e-4);
             let bounds = Aabb::new(center - half, center + half);
             // The local frame stretches by at most about 2.1; functions are at most quadratic.
-            prop_assume!(value(&surface, center).abs() > 0.05);
+            prop_assume!(surface.implicit_value(center).abs() > 0.05);
             prop_assert_ne!(surface.classify(&bounds), Side::Both);
         }
     }

@@ -254,11 +254,7 @@ mod tests {
             for i in -40..=40 {
                 let t = f64::from(i) * 0.25;
                 let p = ray.at(t);
-                let value = match kind {
-                    Quadric::Sphere => p.length_squared() - 1.0,
-                    Quadric::Cylinder => p.x * p.x + p.y * p.y - 1.0,
-                    Quadric::Cone => p.x * p.x + p.y * p.y - p.z * p.z,
-                };
+                let value = surface.implicit_value(p);
                 let passed = changes.as_slice().iter().filter(|&&c| c < t).count();
                 let negative = changes.starts_negative ^ (passed % 2 == 1);
                 prop_assert!(value.abs() < 1e-9 || negative == (value < 0.0));

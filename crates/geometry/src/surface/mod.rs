@@ -107,3 +107,31 @@ fn pull_back(local_from_world: &DAffine3, gradient: DVec3) -> DVec3 {
         .try_normalize()
         .unwrap_or_else(|| (m.transpose() * DVec3::Z).normalize_or(DVec3::Z))
 }
+
+#[cfg(test)]
+impl Surface {
+    /// The implicit function whose sign is the side, written down independently of the solvers.
+    pub(crate) fn implicit_value(&self, p: DVec3) -> f64 {
+        match self {
+            Surface::Plane { normal, offset } => normal.dot(p) - offset,
+            Surface::Quadric {
+                kind,
+                local_from_world,
+            } => {
+                let q = local_from_world.transform_point3(p);
+                match kind {
+                    Quadric::Sphere => q.length_squared() - 1.0,
+                    Quadric::Cylinder => q.x * q.x + q.y * q.y - 1.0,
+                    Quadric::Cone => q.x * q.x + q.y * q.y - q.z * q.z,
+                }
+            }
+            Surface::Torus {
+                minor,
+                local_from_world,
+            } => {
+                let q = local_from_world.transform_point3(p);
+                libm::hypot(libm::hypot(q.x, q.y) - 1.0, q.z) - minor
+            }
+        }
+    }
+}
