@@ -232,13 +232,20 @@ impl Lowering {
                 sides
             }
             Primitive::Cone { radius, z } => {
-                // The radius falls linearly to 0 at the apex; in the frame it equals |z|.
-                let slope = (radius[1] - radius[0]) / (z[1] - z[0]);
-                let apex = z[0] - radius[0] / slope;
+                // The frame stands on the wide end; its height reaches the narrow one at 1.
+                let [(wide, from), (narrow, to)] = if radius[0] > radius[1] {
+                    [(radius[0], z[0]), (radius[1], z[1])]
+                } else {
+                    [(radius[1], z[1]), (radius[0], z[0])]
+                };
                 let frame = *world
-                    * DAffine3::from_translation(DVec3::new(0.0, 0.0, apex))
-                    * DAffine3::from_scale(DVec3::new(slope.abs(), slope.abs(), 1.0));
-                let mut sides = vec![self.quadric(Quadric::Cone, &frame)];
+                    * DAffine3::from_translation(DVec3::new(0.0, 0.0, from))
+                    * DAffine3::from_scale(DVec3::new(wide, wide, to - from));
+                let surface = Surface::Cone {
+                    slope: (narrow - wide) / wide,
+                    local_from_world: frame.inverse(),
+                };
+                let mut sides = vec![(self.table.insert(surface), false)];
                 sides.extend(self.caps(world, *z));
                 sides
             }

@@ -37,7 +37,7 @@ impl LocalBox {
         self.edges.iter().map(|e| gradient.dot(*e).abs()).sum()
     }
 
-    /// The largest `|W x|^2` over the edges' span, for a diagonal 0/1 matrix `W`.
+    /// The largest `|W x|^2` over the edges' span, for a diagonal matrix `W`.
     fn quadratic(&self, weights: DVec3) -> f64 {
         let [a, b, c] = self.edges.map(|e| e * weights);
         [a + b + c, a + b - c, a - b + c, a - b - c]
@@ -85,9 +85,12 @@ impl Surface {
                 match kind {
                     Quadric::Sphere => round(&local, DVec3::ONE, magnitude),
                     Quadric::Cylinder => round(&local, DVec3::new(1.0, 1.0, 0.0), magnitude),
-                    Quadric::Cone => cone(&local, magnitude),
                 }
             }
+            Self::Cone {
+                slope,
+                local_from_world,
+            } => cone(*slope, &LocalBox::new(bounds, local_from_world)),
             Self::Torus {
                 minor,
                 local_from_world,
@@ -108,17 +111,23 @@ fn round(local: &LocalBox, weights: DVec3, magnitude: f64) -> Side {
     decide(low, high, magnitude)
 }
 
-/// `x^2 + y^2 - z^2`.
-fn cone(local: &LocalBox, magnitude: f64) -> Side {
+/// `x^2 + y^2 - (1 + slope z)^2`.
+fn cone(slope: f64, local: &LocalBox) -> Side {
     let (near, far) = local.absolute_range();
     let c = local.center;
-    let value = c.x * c.x + c.y * c.y - c.z * c.z;
-    let linear = local.linear(DVec3::new(c.x, c.y, -c.z) * 2.0);
+    let radius = 1.0 + slope * c.z;
+    let growth = (slope * local.reach.z).abs();
+    let (least, most) = ((radius.abs() - growth).max(0.0), radius.abs() + growth);
+    let value = c.x * c.x + c.y * c.y - radius * radius;
+    let linear = local.linear(DVec3::new(c.x, c.y, -slope * radius) * 2.0);
     let across = DVec3::new(1.0, 1.0, 0.0);
-    let low = ((near * across).length_squared() - far.z * far.z)
-        .max(value - linear - local.quadratic(DVec3::Z));
-    let high = ((far * across).length_squared() - near.z * near.z)
+    let low = ((near * across).length_squared() - most * most)
+        .max(value - linear - local.quadratic(DVec3::Z * slope));
+    let high = ((far * across).length_squared() - least * least)
         .min(value + linear + local.quadratic(across));
+    // The height enters the radius with its own rounding.
+    let height = slope * (c.z.abs() + local.reach.z);
+    let magnitude = c.length_squared() + local.reach.length_squared() + height * height + 1.0;
     decide(low, high, magnitude)
 }
 
@@ -170,8 +179,8 @@ mod tests {
                 kind: Quadric::Cylinder,
                 local_from_world,
             },
-            2 => Surface::Quadric {
-                kind: Quadric::Cone,
+            2 => Surface::Cone {
+                slope: -0.5 * minor,
                 local_from_world,
             },
             3 => Surface::Torus {

@@ -26,8 +26,14 @@ impl Surface {
                 match kind {
                     Quadric::Sphere => sphere(local.origin, local.direction),
                     Quadric::Cylinder => cylinder(local.origin, local.direction),
-                    Quadric::Cone => cone(local.origin, local.direction),
                 }
+            }
+            Self::Cone {
+                slope,
+                local_from_world,
+            } => {
+                let local = ray.transformed(local_from_world);
+                cone(*slope, local.origin, local.direction)
             }
             Self::Torus {
                 minor,
@@ -80,12 +86,14 @@ fn cylinder(o: DVec3, d: DVec3) -> SignChanges {
     symmetric(shift, a, x * x + y * y - 1.0)
 }
 
-fn cone(o: DVec3, d: DVec3) -> SignChanges {
+fn cone(slope: f64, o: DVec3, d: DVec3) -> SignChanges {
     let shift = -o.dot(d) / d.length_squared();
     let p = o + d * shift;
-    let a = d.x * d.x + d.y * d.y - d.z * d.z;
-    let b = p.x * d.x + p.y * d.y - p.z * d.z;
-    let c = p.x * p.x + p.y * p.y - p.z * p.z;
+    let (radius, growth) = (1.0 + slope * p.z, slope * d.z);
+    let a = d.x * d.x + d.y * d.y - growth * growth;
+    let b = p.x * d.x + p.y * d.y - radius * growth;
+    let rho = (p.x * p.x + p.y * p.y).sqrt();
+    let c = (rho - radius) * (rho + radius);
     shifted(roots::quadratic(a, b, c), shift, 1.0)
 }
 
@@ -178,6 +186,13 @@ mod tests {
         (range.clone(), range.clone(), range).prop_map(|(x, y, z)| DVec3::new(x, y, z))
     }
 
+    fn local(kind: Quadric) -> Surface {
+        Surface::Quadric {
+            kind,
+            local_from_world: DAffine3::IDENTITY,
+        }
+    }
+
     fn torus_surface(minor: f64) -> Surface {
         Surface::Torus {
             minor,
@@ -244,11 +259,16 @@ mod tests {
 
         #[test]
         fn sides_between_crossings_are_those_of_the_implicit_function(
-            kind in prop_oneof![Just(Quadric::Sphere), Just(Quadric::Cylinder), Just(Quadric::Cone)],
+            surface in prop_oneof![
+                Just(Quadric::Sphere).prop_map(local),
+                Just(Quadric::Cylinder).prop_map(local),
+                prop_oneof![Just(-1.0), -1.0..-1e-3, Just(-1e-9), Just(-f64::EPSILON)].prop_map(
+                    |slope| Surface::Cone { slope, local_from_world: DAffine3::IDENTITY },
+                ),
+            ],
             o in vector(-3.0..3.0), d in vector(-1.0..1.0),
         ) {
             prop_assume!(d.length() > 1e-3);
-            let surface = Surface::Quadric { kind, local_from_world: DAffine3::IDENTITY };
             let ray = Ray::new(o, d);
             let changes = surface.crossings(&ray);
             for i in -40..=40 {

@@ -30,6 +30,16 @@ pub enum Surface {
         /// Invertible.
         local_from_world: DAffine3,
     },
+    /// In its own frame the cone `x^2 + y^2 = (1 + slope z)^2`, both nappes: radius 1 at height 0.
+    ///
+    /// Not in the frame of its apex: that lies far away for a frustum which is nearly a cylinder,
+    /// and would take all digits along.
+    Cone {
+        /// Change of the radius per height, in `[-1, 0)` for the frusta that solids are made of.
+        slope: f64,
+        /// Invertible.
+        local_from_world: DAffine3,
+    },
     /// In its own frame the torus about z with major radius 1.
     Torus {
         /// Minor radius over major radius.
@@ -46,8 +56,6 @@ pub enum Quadric {
     Sphere,
     /// `x^2 + y^2 = 1`.
     Cylinder,
-    /// `x^2 + y^2 = z^2`, both nappes.
-    Cone,
 }
 
 /// On which side of a surface all points of a box lie.
@@ -77,8 +85,15 @@ impl Surface {
                 let gradient = match kind {
                     Quadric::Sphere => p,
                     Quadric::Cylinder => DVec3::new(p.x, p.y, 0.0),
-                    Quadric::Cone => DVec3::new(p.x, p.y, -p.z),
                 };
+                pull_back(local_from_world, gradient)
+            }
+            Self::Cone {
+                slope,
+                local_from_world,
+            } => {
+                let p = local_from_world.transform_point3(point);
+                let gradient = DVec3::new(p.x, p.y, -slope * (1.0 + slope * p.z));
                 pull_back(local_from_world, gradient)
             }
             Self::Torus {
@@ -122,8 +137,14 @@ impl Surface {
                 match kind {
                     Quadric::Sphere => q.length_squared() - 1.0,
                     Quadric::Cylinder => q.x * q.x + q.y * q.y - 1.0,
-                    Quadric::Cone => q.x * q.x + q.y * q.y - q.z * q.z,
                 }
+            }
+            Surface::Cone {
+                slope,
+                local_from_world,
+            } => {
+                let q = local_from_world.transform_point3(p);
+                libm::hypot(q.x, q.y) - (1.0 + slope * q.z).abs()
             }
             Surface::Torus {
                 minor,

@@ -122,20 +122,27 @@ impl SurfaceTable {
                         put(&axis.to_array());
                         2
                     }
-                    Quadric::Cone => {
-                        // Apex, and the homogeneous form up to a factor.
-                        let m = local_from_world.matrix3;
-                        let form =
-                            m.transpose() * DMat3::from_diagonal(DVec3::new(1.0, 1.0, -1.0)) * m;
-                        let size = form
-                            .to_cols_array()
-                            .iter()
-                            .fold(0.0_f64, |s, v| s.max(v.abs()));
-                        put(&center.to_array());
-                        put(&(form * (1.0 / size)).to_cols_array());
-                        3
-                    }
                 }
+            }
+            Surface::Cone {
+                slope,
+                local_from_world,
+            } => {
+                // The quadratic form about the scene's origin, up to a factor: the same wherever
+                // along the axis the frame stands, and for a frustum that is nearly a cylinder too.
+                let m = local_from_world.matrix3 * (1.0 / self.scale);
+                let o = local_from_world.translation;
+                let weights = DVec3::new(1.0, 1.0, -slope * slope);
+                let form = m.transpose() * DMat3::from_diagonal(weights) * m;
+                let radius = 1.0 + slope * o.z;
+                let linear = m.transpose() * DVec3::new(o.x, o.y, -slope * radius);
+                let constant = o.x * o.x + o.y * o.y - radius * radius;
+                let entries = form.to_cols_array();
+                let size = entries.iter().fold(0.0_f64, |s, v| s.max(v.abs()));
+                put(&(linear / size).to_array());
+                put(&[constant / size]);
+                put(&entries.map(|entry| entry / size));
+                3
             }
             Surface::Torus {
                 minor,
@@ -252,6 +259,23 @@ mod tests {
         assert_eq!(table.insert(cylinder(tilt * along * turned * scale)), a);
         let aside = DAffine3::from_translation(DVec3::new(1e-6, 0.0, 0.0));
         assert_ne!(table.insert(cylinder(tilt * aside * scale)), a);
+    }
+
+    #[test]
+    fn two_frusta_of_one_cone_share_it_and_a_near_cylinder_keeps_its_place() {
+        // Radius 4 - 2 z: once from z = 0, once from z = 1.
+        let cone = |base: f64, radius: f64, slope: f64| Surface::Cone {
+            slope,
+            local_from_world: (DAffine3::from_translation(DVec3::new(1.0, 2.0, base))
+                * DAffine3::from_scale(DVec3::splat(radius)))
+            .inverse(),
+        };
+        let mut table = SurfaceTable::new(5.0);
+        let a = table.insert(cone(0.0, 4.0, -2.0));
+        assert_eq!(table.insert(cone(1.0, 2.0, -2.0)), a);
+        assert_ne!(table.insert(cone(1.0, 2.1, -2.0)), a);
+        let b = table.insert(cone(0.0, 2.0, -1e-15));
+        assert_ne!(table.insert(cone(0.0, 2.1, -1e-15)), b);
     }
 
     proptest! {

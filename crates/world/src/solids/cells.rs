@@ -5,7 +5,7 @@ use std::ops::Range;
 use octray_geometry::FaceId;
 use octray_geometry::csg::{self, Constant, Face, truth_on};
 use octray_geometry::mesh::MeshSolid;
-use octray_geometry::surface::{Quadric, Side, Surface};
+use octray_geometry::surface::{Side, Surface};
 use octray_math::Aabb;
 use octray_tree::{Cell, Subdivide};
 
@@ -122,14 +122,8 @@ impl Cells<'_> {
     fn cost(&self, surface: u32) -> f64 {
         match self.surfaces.get(surface as usize) {
             Some(Surface::Plane { .. }) => 1.0,
-            Some(Surface::Quadric {
-                kind: Quadric::Sphere | Quadric::Cylinder,
-                ..
-            }) => 2.0,
-            Some(Surface::Quadric {
-                kind: Quadric::Cone,
-                ..
-            }) => 3.0,
+            Some(Surface::Quadric { .. }) => 2.0,
+            Some(Surface::Cone { .. }) => 3.0,
             Some(Surface::Torus { .. }) => 5.0,
             None => 8.0,
         }

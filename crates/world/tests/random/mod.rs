@@ -1,6 +1,7 @@
 //! Random solids, coincident faces preferred: coordinates come from a coarse grid.
 
 use octray_geometry::Solid;
+use octray_geometry::surface::SURFACE_TOLERANCE;
 use octray_math::{DAffine3, DVec3, transform};
 use proptest::prelude::*;
 
@@ -62,9 +63,19 @@ pub(crate) fn point(range: f64) -> impl Strategy<Value = DVec3> {
     (-range..range, -range..range, -range..range).prop_map(|(x, y, z)| DVec3::new(x, y, z))
 }
 
-/// Multiples of 1/2 in [-2, 2].
+/// Multiples of 1/2 in [-2, 2], some a few units in the last place or a few surface tolerances off:
+/// what should coincide and what should not.
 fn grid() -> impl Strategy<Value = f64> {
-    (-4i32..=4).prop_map(|i| f64::from(i) * 0.5)
+    nearly((-4i32..=4).prop_map(|i| f64::from(i) * 0.5))
+}
+
+fn nearly(exact: impl Strategy<Value = f64>) -> impl Strategy<Value = f64> {
+    let off = prop_oneof![
+        4 => Just(0.0),
+        1 => (-3i32..=3).prop_map(|ulps| f64::from(ulps) * f64::EPSILON),
+        1 => (-3i32..=3).prop_map(|steps| f64::from(steps) * SURFACE_TOLERANCE),
+    ];
+    (exact, off).prop_map(|(x, off)| x * (1.0 + off))
 }
 
 fn grid_point() -> impl Strategy<Value = DVec3> {
@@ -72,7 +83,7 @@ fn grid_point() -> impl Strategy<Value = DVec3> {
 }
 
 fn length() -> impl Strategy<Value = f64> {
-    (1i32..=4).prop_map(|i| f64::from(i) * 0.5)
+    nearly((1i32..=4).prop_map(|i| f64::from(i) * 0.5))
 }
 
 fn frame() -> impl Strategy<Value = DAffine3> {
