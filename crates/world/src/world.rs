@@ -5,12 +5,12 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use octray_geometry::FaceId;
 use octray_geometry::mesh::MeshError;
-use octray_math::{Aabb, DVec3};
+use octray_math::Aabb;
 use octray_scene::{Scene, Shape};
 use octray_tree::{CellTreeStats, Criteria, WideTreeConfig, WideTreeError, WideTreeStats};
 use thiserror::Error;
 
-use crate::line::Line;
+use crate::line::{Line, Place};
 use crate::sheets::{SheetHit, Sheets};
 use crate::solids::{Interface, Scratch, Solids};
 use crate::{Counters, Hit, RayQuery, Region};
@@ -61,8 +61,7 @@ pub struct World {
     pub(crate) scene: Arc<Scene>,
     pub(crate) solids: Solids,
     pub(crate) sheets: Sheets,
-    /// Rays are moved to their closest approach to this point.
-    center: DVec3,
+    pub(crate) place: Place,
     /// For each material whether no light passes it.
     opaque: Vec<bool>,
     scratch: ScratchPool,
@@ -114,15 +113,10 @@ impl World {
         }
         let criteria = accelerate.then_some(&config.criteria);
         let triangles = accelerate.then_some(&config.triangles);
-        let solids = Solids::prepare(&scene, criteria, triangles)
+        let place = Place::new(&scene.bounds());
+        let solids = Solids::prepare(&scene, &place.frame, criteria, triangles)
             .map_err(|(object, error)| WorldError::Mesh { object, error })?;
-        let sheets = Sheets::prepare(&scene, solids.face_count(), triangles)?;
-        let bounds = scene.bounds();
-        let center = if bounds.is_empty() {
-            DVec3::ZERO
-        } else {
-            bounds.center()
-        };
+        let sheets = Sheets::prepare(&scene, &place.frame, solids.face_count(), triangles)?;
         let opaque = scene
             .materials()
             .iter()
@@ -133,7 +127,7 @@ impl World {
             scene,
             solids,
             sheets,
-            center,
+            place,
             opaque,
             scratch,
         })
@@ -194,7 +188,7 @@ impl World {
     }
 
     fn closest_one(&self, query: &RayQuery, scratch: &mut Scratch, counters: &mut Counters) -> Hit {
-        let Some(line) = Line::new(query, self.center) else {
+        let Some(line) = Line::new(query, &self.place) else {
             return Hit::MISS;
         };
         let mut best: Option<Interface> = None;
@@ -255,7 +249,7 @@ impl World {
         scratch: &mut Scratch,
         counters: &mut Counters,
     ) -> bool {
-        let Some(line) = Line::new(query, self.center) else {
+        let Some(line) = Line::new(query, &self.place) else {
             return false;
         };
         let found = Cell::new(false);
@@ -299,7 +293,7 @@ impl World {
     ) {
         hits.clear();
         counters.rays += 1;
-        let Some(mut line) = Line::new(query, self.center) else {
+        let Some(mut line) = Line::new(query, &self.place) else {
             return;
         };
         if whole_line {
@@ -332,7 +326,7 @@ impl World {
 
     /// A line through the same space as the query's, for what needs another look at it.
     pub(crate) fn line(&self, query: &RayQuery) -> Option<Line> {
-        Line::new(query, self.center)
+        Line::new(query, &self.place)
     }
 }
 

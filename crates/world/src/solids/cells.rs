@@ -120,13 +120,9 @@ impl Cells<'_> {
     /// The work of a surface in a cell, in planes. A line crosses each surface once, however many
     /// cells ask, so the costly ones count less than a single crossing costs.
     fn cost(&self, surface: u32) -> f64 {
-        match self.surfaces.get(surface as usize) {
-            Some(Surface::Plane { .. }) => 1.0,
-            Some(Surface::Quadric { .. }) => 2.0,
-            Some(Surface::Cone { .. }) => 3.0,
-            Some(Surface::Torus { .. }) => 5.0,
-            None => 8.0,
-        }
+        self.surfaces
+            .get(surface as usize)
+            .map_or(8.0, Surface::cost)
     }
 }
 

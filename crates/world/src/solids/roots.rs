@@ -89,10 +89,8 @@ impl Solids {
             let starts_negative = match self.surfaces.get(index) {
                 Some(surface) => {
                     counters.surface_tests += 1;
-                    let changes = surface.crossings(&line.ray);
-                    let root = |&s: &f64| Root { s, triangle: 0 };
-                    scratch.roots.extend(changes.as_slice().iter().map(root));
-                    changes.starts_negative
+                    let roots = &mut scratch.roots;
+                    surface.crossings(&line.ray, |s| roots.push(Root { s, triangle: 0 }))
                 }
                 None => {
                     let mesh = &self.meshes[index - self.surfaces.len()].solid;
