@@ -64,7 +64,7 @@ pub struct World {
     pub(crate) place: Place,
     /// For each material whether no light passes it.
     opaque: Vec<bool>,
-    scratch: ScratchPool,
+    pub(crate) scratch: ScratchPool,
 }
 
 /// What was prepared.
@@ -88,10 +88,10 @@ pub struct WorldStats {
 
 /// Working memory is handed from query to query instead of being made anew.
 #[derive(Debug, Default)]
-struct ScratchPool(Mutex<Vec<Scratch>>);
+pub(crate) struct ScratchPool(Mutex<Vec<Scratch>>);
 
 impl ScratchPool {
-    fn with<R>(&self, work: impl FnOnce(&mut Scratch) -> R) -> R {
+    pub(crate) fn with<R>(&self, work: impl FnOnce(&mut Scratch) -> R) -> R {
         let lock = || self.0.lock().unwrap_or_else(PoisonError::into_inner);
         let mut scratch = lock().pop().unwrap_or_default();
         let result = work(&mut scratch);
@@ -197,9 +197,11 @@ impl World {
         };
         let limit_of = |best: &Option<Interface>| best.map_or(f64::INFINITY, |b| b.s);
         self.solids
-            .sweep_line(&line, f64::INFINITY, scratch, counters, |found| {
-                if nearer(found.s, found.face, &best) {
-                    best = Some(*found);
+            .sweep_line(&line, f64::INFINITY, scratch, counters, |change| {
+                if let Some(found) = change.interface()
+                    && nearer(found.s, found.face, &best)
+                {
+                    best = Some(found);
                 }
                 limit_of(&best)
             });
@@ -266,8 +268,10 @@ impl World {
             .visit_line(&line, f64::INFINITY, counters, |hit| visit(hit.s, hit.face));
         if !found.get() {
             self.solids
-                .sweep_line(&line, f64::INFINITY, scratch, counters, |i| {
-                    visit(i.s, i.face)
+                .sweep_line(&line, f64::INFINITY, scratch, counters, |change| {
+                    change
+                        .interface()
+                        .map_or(f64::INFINITY, |i| visit(i.s, i.face))
                 });
         }
         found.get()
@@ -281,7 +285,7 @@ impl World {
         })
     }
 
-    /// All boundaries on the ray, in order; with `whole_line` also those at `t <= 0`.
+    /// All boundaries that are seen on the ray, in order, where two solids touch one; with `whole_line` also those at `t <= 0`.
     ///
     /// `hits` is cleared first.
     pub fn crossings(
@@ -302,8 +306,8 @@ impl World {
         let mut found: Vec<Interface> = Vec::new();
         self.scratch.with(|scratch| {
             self.solids
-                .sweep_line(&line, f64::INFINITY, scratch, counters, |interface| {
-                    found.push(*interface);
+                .sweep_line(&line, f64::INFINITY, scratch, counters, |change| {
+                    found.extend(change.interface());
                     f64::INFINITY
                 });
             let first_sheet = found.len();

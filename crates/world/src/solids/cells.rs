@@ -150,14 +150,6 @@ impl Subdivide for Cells<'_> {
             let (expression, clip) = (parent.expression(object), parent.clip(object));
             content.add(object.rank, is_shell, expression, clip, &mut truth);
         }
-        // What a higher priority fills hides the boundaries of all that have a lower one.
-        if let Some(base) = content.base.checked_sub(1) {
-            let hides = |rank: u32| {
-                let object = &self.ranked[rank as usize];
-                !object.shell && object.priority < self.ranked[base as usize].priority
-            };
-            content.objects.retain(|object| !hides(object.rank));
-        }
         content.finish(self.faces);
         content
     }

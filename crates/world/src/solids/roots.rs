@@ -6,6 +6,7 @@ use std::ops::Range;
 use super::Solids;
 use super::sweep::Event;
 use crate::Counters;
+use crate::chords::ChordScratch;
 use crate::line::Line;
 use octray_geometry::FaceId;
 use octray_tree::{WalkCost, WalkStack};
@@ -57,6 +58,7 @@ pub(crate) struct Scratch {
     pub(super) inside: Vec<bool>,
     pub(super) inside_after: Vec<bool>,
     pub(super) stack: WalkStack,
+    pub(crate) chords: ChordScratch,
     mesh_roots: Vec<octray_geometry::mesh::MeshCrossing>,
 }
 
