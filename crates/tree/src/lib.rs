@@ -6,6 +6,7 @@
 //! [`WideTree`] finds the items whose boxes a line meets, front to back, eight boxes at a time.
 
 pub mod cell_tree;
+pub mod encoding;
 pub mod triangle_cube;
 pub mod wide_tree;
 

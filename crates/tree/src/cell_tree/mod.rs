@@ -41,7 +41,7 @@ pub enum Node {
 const TAG_BITS: u32 = 2;
 
 impl Node {
-    const fn encode(self) -> u32 {
+    pub(crate) const fn encode(self) -> u32 {
         match self {
             Self::Empty(state) => state << TAG_BITS,
             Self::Occupied(leaf) => leaf << TAG_BITS | 1,
@@ -49,7 +49,7 @@ impl Node {
         }
     }
 
-    const fn decode(word: u32) -> Self {
+    pub(crate) const fn decode(word: u32) -> Self {
         let payload = word >> TAG_BITS;
         match word & 3 {
             0 => Self::Empty(payload),
@@ -105,6 +105,24 @@ impl CellTree {
     /// The nodes as they lie in memory, for hashing and comparing.
     pub fn words(&self) -> impl Iterator<Item = u32> + '_ {
         std::iter::once(self.root_node).chain(self.blocks.iter().flatten().copied())
+    }
+
+    /// Visits all leaves in Morton order.
+    pub fn visit_leaves(&self, mut visit: impl FnMut(CellKey, Node)) {
+        let mut stack = vec![(CellKey::ROOT, Node::decode(self.root_node))];
+        while let Some((key, node)) = stack.pop() {
+            match node {
+                Node::Divided(block) => {
+                    let children = &self.blocks[block as usize];
+                    let decoded = (0..8).rev().map(|octant| {
+                        let word = children[octant as usize];
+                        (key.child(octant), Node::decode(word))
+                    });
+                    stack.extend(decoded);
+                }
+                leaf => visit(key, leaf),
+            }
+        }
     }
 
     /// The smallest cell that holds `point`, `None` outside the root.
