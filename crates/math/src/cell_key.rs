@@ -56,6 +56,14 @@ impl CellKey {
         (i & 1) | (j & 1) << 1 | (k & 1) << 2
     }
 
+    /// Which child the ancestor of `depth` (at least 1, at most this depth) is of its parent.
+    #[must_use]
+    pub const fn octant_at(self, depth: u32) -> u32 {
+        let below = self.depth - depth;
+        let [i, j, k] = self.index;
+        (i >> below & 1) | (j >> below & 1) << 1 | (k >> below & 1) << 2
+    }
+
     /// The cell of this depth that holds `point`, `None` outside the cube `root`. A point on a face
     /// belongs to the upper cell; the faces of the root to the cells inside.
     #[must_use]

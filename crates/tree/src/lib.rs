@@ -7,6 +7,7 @@
 
 pub mod cell_tree;
 pub mod encoding;
+pub mod traversal;
 pub mod triangle_cube;
 pub mod wide_tree;
 

@@ -5,6 +5,8 @@
 
 mod build;
 #[cfg(test)]
+pub(crate) mod points;
+#[cfg(test)]
 mod tests;
 mod walk;
 
@@ -94,6 +96,14 @@ impl CellTree {
     #[must_use]
     pub const fn root(&self) -> &Aabb {
         &self.root
+    }
+
+    pub(crate) const fn root_node(&self) -> Node {
+        Node::decode(self.root_node)
+    }
+
+    pub(crate) fn child(&self, block: u32, octant: u32) -> Node {
+        Node::decode(self.blocks[block as usize][octant as usize])
     }
 
     /// Figures about the tree.

@@ -221,48 +221,9 @@ fn is_prime(n: u64) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::cell_tree::{Cell, Criteria, Subdivide, enclosing_cube};
-    use octray_math::{Aabb, DVec3, MAX_DEPTH};
+    use crate::cell_tree::points::tree;
+    use octray_math::{DVec3, MAX_DEPTH};
     use proptest::prelude::*;
-
-    /// Points as contents: a cell holds the points in it.
-    struct Points;
-
-    impl Subdivide for Points {
-        type Content = Vec<DVec3>;
-
-        fn restrict(&self, parent: &Vec<DVec3>, cell: &Aabb) -> Vec<DVec3> {
-            parent
-                .iter()
-                .copied()
-                .filter(|p| cell.contains(*p))
-                .collect()
-        }
-
-        fn describe(&self, content: &Vec<DVec3>) -> Cell {
-            match content.len() as u32 {
-                0 => Cell::Empty(0),
-                // A cost that falls steeply, so that the tree follows every point down.
-                n => Cell::Occupied {
-                    cost: 1e6 * f64::from(n),
-                    parts: n,
-                },
-            }
-        }
-
-        fn bytes(&self, content: &Vec<DVec3>) -> u64 {
-            content.len() as u64
-        }
-    }
-
-    fn tree(points: &[DVec3], max_depth: u32) -> CellTree {
-        let cube = enclosing_cube(&Aabb::new(DVec3::splat(-1.0), DVec3::ONE));
-        let criteria = Criteria {
-            max_depth,
-            ..Criteria::default()
-        };
-        CellTree::build(cube, points.to_vec(), &Points, &criteria).0
-    }
 
     fn point() -> impl Strategy<Value = DVec3> {
         let x = || -1.0..1.0f64;
