@@ -58,7 +58,7 @@ impl World {
         let is_sheet = triangle.is_some();
         let of_solid = || {
             line.as_ref()
-                .and_then(|line| self.solids.point(line, hit.face, position))
+                .and_then(|line| self.solids.point(line, hit.face, hit.entering, position))
         };
         let TrianglePoint {
             normal,
