@@ -5,6 +5,7 @@
 //! every constructor refuses what it cannot represent with a [`ShapeError`].
 
 pub mod csg;
+mod frame;
 mod identity;
 pub mod mesh;
 mod primitive;
@@ -12,6 +13,7 @@ mod sheet;
 mod solid;
 pub mod surface;
 
+pub use frame::SceneFrame;
 pub use identity::{FaceId, MaterialId, SurfaceId};
 pub use mesh::{CornerAttribute, MeshError, TriangleMesh};
 pub use primitive::{ConvexPolyhedron, Primitive, ShapeError};

@@ -51,6 +51,24 @@ impl SignChanges {
         }
     }
 
+    /// The changes found at `u`, now at `t = shift + u * scale`, `scale > 0`; pairs that round
+    /// together vanish.
+    #[must_use]
+    pub fn moved(mut self, shift: f64, scale: f64) -> Self {
+        let mut kept = 0;
+        for i in 0..self.count {
+            let t = shift + self.t[i] * scale;
+            if kept > 0 && self.t[kept - 1] >= t {
+                kept -= 1;
+            } else {
+                self.t[kept] = t;
+                kept += 1;
+            }
+        }
+        self.count = kept;
+        self
+    }
+
     /// The parameters at which the sign changes.
     #[must_use]
     pub fn as_slice(&self) -> &[f64] {

@@ -57,8 +57,10 @@ impl World {
             .and_then(|line| self.sheets.point(line, hit.face));
         let is_sheet = triangle.is_some();
         let of_solid = || {
-            line.as_ref()
-                .and_then(|line| self.solids.point(line, hit.face, position))
+            line.as_ref().and_then(|line| {
+                let in_scene = self.place.scene_from_world(position);
+                self.solids.point(line, hit.face, in_scene)
+            })
         };
         let TrianglePoint {
             normal,

@@ -4,6 +4,7 @@
 //! above it. Its answers are the same bits whatever structure finds them: a structure only proposes
 //! what to test, one `f64` function per shape decides, and ties go to the lowest face.
 
+mod chords;
 mod interact;
 mod line;
 mod query;
@@ -11,6 +12,7 @@ mod sheets;
 mod solids;
 mod world;
 
+pub use chords::{Chord, ChordEnd, Overlaps};
 pub use query::{Counters, Departure, Hit, RayQuery, Region, SurfaceHit};
 pub use world::{Accel, World, WorldConfig, WorldError, WorldStats};
 

@@ -1,10 +1,36 @@
 //! Rays as the structures see them: moved and scaled so that rounding stays small.
 
-use octray_math::{DVec3, Ray};
+use octray_geometry::SceneFrame;
+use octray_math::{Aabb, DVec3, Ray};
 
 use crate::{Departure, RayQuery};
 
-/// A ray whose origin lies at its closest approach to the scene's centre and whose direction's
+/// Where the scene is: the coordinates it is worked on in, and its centre in them.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Place {
+    pub(crate) frame: SceneFrame,
+    center: DVec3,
+}
+
+impl Place {
+    /// Of the bounded objects in this box, which may be empty.
+    pub(crate) fn new(bounds: &Aabb) -> Self {
+        let frame = SceneFrame::new(bounds);
+        let center = if bounds.is_empty() || !bounds.is_bounded() {
+            DVec3::ZERO
+        } else {
+            bounds.center() - frame.origin
+        };
+        Self { frame, center }
+    }
+
+    /// A point of the world in the scene's coordinates.
+    pub(crate) fn scene_from_world(&self, point: DVec3) -> DVec3 {
+        point - self.frame.origin
+    }
+}
+
+/// A ray in the coordinates of the scene whose origin lies at its closest approach to the scene's centre and whose direction's
 /// largest component lies in `[1, 2)`.
 ///
 /// Everything is tested against `ray` and compared by its parameter `s`; the user's parameter is
@@ -24,7 +50,7 @@ pub(crate) struct Line {
 
 impl Line {
     /// `None` for a ray with a NaN, an infinity or no direction: it meets nothing.
-    pub(crate) fn new(query: &RayQuery, center: DVec3) -> Option<Self> {
+    pub(crate) fn new(query: &RayQuery, place: &Place) -> Option<Self> {
         let Ray { origin, direction } = query.ray;
         let largest = direction.abs().max_element();
         if !(origin.is_finite() && direction.is_finite() && largest > 0.0) {
@@ -34,8 +60,8 @@ impl Line {
         let exponent = libm::ilogb(largest);
         let scale = libm::ldexp(1.0, exponent);
         let direction = DVec3::from_array(direction.to_array().map(|x| libm::ldexp(x, -exponent)));
-        let unit = Ray::new(origin, direction);
-        let shift = unit.closest_approach(center);
+        let unit = Ray::new(origin - place.frame.origin, direction);
+        let shift = unit.closest_approach(place.center);
         let ray = unit.shifted(shift);
         if !(ray.origin.is_finite() && scale > 0.0) {
             return None;

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use octray_geometry::mesh::{Placement, TrianglePoint, TriangleTree};
-use octray_geometry::{FaceId, MaterialId, Sheet, TriangleMesh};
+use octray_geometry::{FaceId, MaterialId, SceneFrame, Sheet, TriangleMesh};
 use octray_math::Interval;
 use octray_scene::{ObjectId, Scene, Shape};
 use octray_tree::{WalkCost, WideTreeConfig, WideTreeError};
@@ -20,7 +20,7 @@ struct Part {
     first_triangle: u32,
 }
 
-/// All triangles in world coordinates.
+/// All triangles in the coordinates of the scene.
 #[derive(Debug)]
 pub(crate) struct Sheets {
     parts: Vec<Part>,
@@ -44,6 +44,7 @@ impl Sheets {
     /// The octree would be too large.
     pub(crate) fn prepare(
         scene: &Scene,
+        frame: &SceneFrame,
         first_face: u32,
         config: Option<&WideTreeConfig>,
     ) -> Result<Self, WideTreeError> {
@@ -56,7 +57,7 @@ impl Sheets {
                 world_from_mesh,
             }) = &object.shape
             {
-                let placement = Placement::new(world_from_mesh);
+                let placement = Placement::new(&(frame.scene_from_world() * *world_from_mesh));
                 let first_vertex = positions.len() as u32;
                 positions.extend(placement.positions(mesh));
                 let first_triangle = triangles.len() as u32;

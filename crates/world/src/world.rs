@@ -5,12 +5,12 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use octray_geometry::FaceId;
 use octray_geometry::mesh::MeshError;
-use octray_math::{Aabb, DVec3};
+use octray_math::Aabb;
 use octray_scene::{Scene, Shape};
 use octray_tree::{CellTreeStats, Criteria, WideTreeConfig, WideTreeError, WideTreeStats};
 use thiserror::Error;
 
-use crate::line::Line;
+use crate::line::{Line, Place};
 use crate::sheets::{SheetHit, Sheets};
 use crate::solids::{Interface, Scratch, Solids};
 use crate::{Counters, Hit, RayQuery, Region};
@@ -61,11 +61,10 @@ pub struct World {
     pub(crate) scene: Arc<Scene>,
     pub(crate) solids: Solids,
     pub(crate) sheets: Sheets,
-    /// Rays are moved to their closest approach to this point.
-    center: DVec3,
+    pub(crate) place: Place,
     /// For each material whether no light passes it.
     opaque: Vec<bool>,
-    scratch: ScratchPool,
+    pub(crate) scratch: ScratchPool,
 }
 
 /// What was prepared.
@@ -89,10 +88,10 @@ pub struct WorldStats {
 
 /// Working memory is handed from query to query instead of being made anew.
 #[derive(Debug, Default)]
-struct ScratchPool(Mutex<Vec<Scratch>>);
+pub(crate) struct ScratchPool(Mutex<Vec<Scratch>>);
 
 impl ScratchPool {
-    fn with<R>(&self, work: impl FnOnce(&mut Scratch) -> R) -> R {
+    pub(crate) fn with<R>(&self, work: impl FnOnce(&mut Scratch) -> R) -> R {
         let lock = || self.0.lock().unwrap_or_else(PoisonError::into_inner);
         let mut scratch = lock().pop().unwrap_or_default();
         let result = work(&mut scratch);
@@ -114,15 +113,10 @@ impl World {
         }
         let criteria = accelerate.then_some(&config.criteria);
         let triangles = accelerate.then_some(&config.triangles);
-        let solids = Solids::prepare(&scene, criteria, triangles)
+        let place = Place::new(&scene.bounds());
+        let solids = Solids::prepare(&scene, &place.frame, criteria, triangles)
             .map_err(|(object, error)| WorldError::Mesh { object, error })?;
-        let sheets = Sheets::prepare(&scene, solids.face_count(), triangles)?;
-        let bounds = scene.bounds();
-        let center = if bounds.is_empty() {
-            DVec3::ZERO
-        } else {
-            bounds.center()
-        };
+        let sheets = Sheets::prepare(&scene, &place.frame, solids.face_count(), triangles)?;
         let opaque = scene
             .materials()
             .iter()
@@ -133,7 +127,7 @@ impl World {
             scene,
             solids,
             sheets,
-            center,
+            place,
             opaque,
             scratch,
         })
@@ -194,7 +188,7 @@ impl World {
     }
 
     fn closest_one(&self, query: &RayQuery, scratch: &mut Scratch, counters: &mut Counters) -> Hit {
-        let Some(line) = Line::new(query, self.center) else {
+        let Some(line) = Line::new(query, &self.place) else {
             return Hit::MISS;
         };
         let mut best: Option<Interface> = None;
@@ -203,9 +197,11 @@ impl World {
         };
         let limit_of = |best: &Option<Interface>| best.map_or(f64::INFINITY, |b| b.s);
         self.solids
-            .sweep_line(&line, f64::INFINITY, scratch, counters, |found| {
-                if nearer(found.s, found.face, &best) {
-                    best = Some(*found);
+            .sweep_line(&line, f64::INFINITY, scratch, counters, |change| {
+                if let Some(found) = change.interface()
+                    && nearer(found.s, found.face, &best)
+                {
+                    best = Some(found);
                 }
                 limit_of(&best)
             });
@@ -255,7 +251,7 @@ impl World {
         scratch: &mut Scratch,
         counters: &mut Counters,
     ) -> bool {
-        let Some(line) = Line::new(query, self.center) else {
+        let Some(line) = Line::new(query, &self.place) else {
             return false;
         };
         let found = Cell::new(false);
@@ -272,8 +268,10 @@ impl World {
             .visit_line(&line, f64::INFINITY, counters, |hit| visit(hit.s, hit.face));
         if !found.get() {
             self.solids
-                .sweep_line(&line, f64::INFINITY, scratch, counters, |i| {
-                    visit(i.s, i.face)
+                .sweep_line(&line, f64::INFINITY, scratch, counters, |change| {
+                    change
+                        .interface()
+                        .map_or(f64::INFINITY, |i| visit(i.s, i.face))
                 });
         }
         found.get()
@@ -287,7 +285,7 @@ impl World {
         })
     }
 
-    /// All boundaries on the ray, in order; with `whole_line` also those at `t <= 0`.
+    /// All boundaries that are seen on the ray, in order, where two solids touch one; with `whole_line` also those at `t <= 0`.
     ///
     /// `hits` is cleared first.
     pub fn crossings(
@@ -299,7 +297,7 @@ impl World {
     ) {
         hits.clear();
         counters.rays += 1;
-        let Some(mut line) = Line::new(query, self.center) else {
+        let Some(mut line) = Line::new(query, &self.place) else {
             return;
         };
         if whole_line {
@@ -308,8 +306,8 @@ impl World {
         let mut found: Vec<Interface> = Vec::new();
         self.scratch.with(|scratch| {
             self.solids
-                .sweep_line(&line, f64::INFINITY, scratch, counters, |interface| {
-                    found.push(*interface);
+                .sweep_line(&line, f64::INFINITY, scratch, counters, |change| {
+                    found.extend(change.interface());
                     f64::INFINITY
                 });
             let first_sheet = found.len();
@@ -332,7 +330,7 @@ impl World {
 
     /// A line through the same space as the query's, for what needs another look at it.
     pub(crate) fn line(&self, query: &RayQuery) -> Option<Line> {
-        Line::new(query, self.center)
+        Line::new(query, &self.place)
     }
 }
 

@@ -2,11 +2,11 @@
 
 use std::sync::Arc;
 
-use octray_math::{DAffine3, DVec3};
+use octray_math::DAffine3;
 
 use super::code::{Code, Constant, Operation, Writer};
-use crate::surface::{Quadric, Surface, SurfaceTable, points_upward};
-use crate::{FaceId, MaterialId, Primitive, Solid, SolidNode, SurfaceId, TriangleMesh};
+use crate::surface::{Surface, SurfaceTable};
+use crate::{FaceId, MaterialId, Primitive, SceneFrame, Solid, SolidNode, SurfaceId, TriangleMesh};
 
 /// One face of one operand: the literal of the expressions.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -26,7 +26,7 @@ pub struct MeshOperand {
     /// The mesh in its own frame.
     pub mesh: Arc<TriangleMesh>,
     /// Where it is.
-    pub world_from_mesh: DAffine3,
+    pub scene_from_mesh: DAffine3,
 }
 
 /// An expression, or what it always is.
@@ -35,40 +35,43 @@ pub type Lowered = Result<Code, Constant>;
 /// Lowers the solids of one world, numbering faces and surfaces in the order it meets them.
 #[derive(Debug)]
 pub struct Lowering {
-    table: SurfaceTable,
+    scene_from_world: DAffine3,
+    pub(super) table: SurfaceTable,
     faces: Vec<Face>,
-    meshes: Vec<MeshOperand>,
+    pub(super) meshes: Vec<MeshOperand>,
 }
 
 /// Surfaces of meshes are numbered downwards from here until the table's size is known.
-const FIRST_MESH: u32 = u32::MAX;
+pub(super) const FIRST_MESH: u32 = u32::MAX;
 
 /// Where one is in the tree.
 #[derive(Clone, Copy)]
 struct Context {
-    world_from_here: DAffine3,
+    scene_from_here: DAffine3,
     complemented: bool,
     material: Option<MaterialId>,
 }
 
 impl Lowering {
-    /// For a scene of this size (largest coordinate; positive and finite).
+    /// For a scene that is worked on in these coordinates: faces, surfaces and meshes come out in
+    /// them.
     #[must_use]
-    pub fn new(scene_size: f64) -> Self {
+    pub fn new(frame: &SceneFrame) -> Self {
         Self {
-            table: SurfaceTable::new(scene_size),
+            scene_from_world: frame.scene_from_world(),
+            table: SurfaceTable::new(frame.size, frame.largest()),
             faces: Vec::new(),
             meshes: Vec::new(),
         }
     }
 
-    /// The expression of a solid in world coordinates.
+    /// The expression of a solid given in world coordinates.
     ///
     /// The solid's size must have been checked ([`Solid::check_size`]): this recurses.
     pub fn lower(&mut self, solid: &Solid) -> Lowered {
         let mut writer = Writer::default();
         let context = Context {
-            world_from_here: DAffine3::IDENTITY,
+            scene_from_here: self.scene_from_world,
             complemented: false,
             material: None,
         };
@@ -116,11 +119,11 @@ impl Lowering {
                 child,
                 parent_from_child,
             } => {
-                let world_from_here = context.world_from_here * *parent_from_child;
+                let scene_from_here = context.scene_from_here * *parent_from_child;
                 self.visit(
                     child,
                     &Context {
-                        world_from_here,
+                        scene_from_here,
                         ..*context
                     },
                     writer,
@@ -192,7 +195,7 @@ impl Lowering {
     }
 
     fn primitive(&mut self, primitive: &Primitive, context: &Context, writer: &mut Writer) {
-        let sides = self.sides(primitive, &context.world_from_here);
+        let sides = self.sides(primitive, &context.scene_from_here);
         let operation = if context.complemented {
             Operation::Or
         } else {
@@ -212,138 +215,24 @@ impl Lowering {
         }
         writer.close(&open);
     }
-
-    /// The surfaces of a primitive, each with whether the inside is on its positive side.
-    fn sides(&mut self, primitive: &Primitive, world: &DAffine3) -> Vec<(SurfaceId, bool)> {
-        match primitive {
-            Primitive::Sphere { radius } => {
-                let frame = *world * DAffine3::from_scale(DVec3::splat(*radius));
-                vec![self.quadric(Quadric::Sphere, &frame)]
-            }
-            Primitive::Box { min, max } => [DVec3::X, DVec3::Y, DVec3::Z]
-                .into_iter()
-                .flat_map(|axis| [(axis, *max), (-axis, *min)])
-                .map(|(normal, corner)| self.plane(world, normal, corner))
-                .collect(),
-            Primitive::Cylinder { radius, z } => {
-                let frame = *world * DAffine3::from_scale(DVec3::new(*radius, *radius, 1.0));
-                let mut sides = vec![self.quadric(Quadric::Cylinder, &frame)];
-                sides.extend(self.caps(world, *z));
-                sides
-            }
-            Primitive::Cone { radius, z } => {
-                // The frame stands on the wide end; its height reaches the narrow one at 1.
-                let [(wide, from), (narrow, to)] = if radius[0] > radius[1] {
-                    [(radius[0], z[0]), (radius[1], z[1])]
-                } else {
-                    [(radius[1], z[1]), (radius[0], z[0])]
-                };
-                let frame = *world
-                    * DAffine3::from_translation(DVec3::new(0.0, 0.0, from))
-                    * DAffine3::from_scale(DVec3::new(wide, wide, to - from));
-                let surface = Surface::Cone {
-                    slope: (narrow - wide) / wide,
-                    local_from_world: frame.inverse(),
-                };
-                let mut sides = vec![(self.table.insert(surface), false)];
-                sides.extend(self.caps(world, *z));
-                sides
-            }
-            Primitive::Torus { major, minor } => {
-                let frame = *world * DAffine3::from_scale(DVec3::splat(*major));
-                let local_from_world = frame.inverse();
-                let minor = minor / major;
-                vec![(
-                    self.table.insert(Surface::Torus {
-                        minor,
-                        local_from_world,
-                    }),
-                    false,
-                )]
-            }
-            Primitive::HalfSpace { normal, offset } => {
-                vec![self.plane(world, *normal, *normal * *offset)]
-            }
-            Primitive::Convex(polyhedron) => polyhedron
-                .planes
-                .iter()
-                .map(|(normal, offset)| self.plane(world, *normal, *normal * *offset))
-                .collect(),
-            Primitive::Mesh(mesh) => {
-                let surface = SurfaceId(FIRST_MESH - self.meshes.len() as u32);
-                self.meshes.push(MeshOperand {
-                    mesh: Arc::clone(mesh),
-                    world_from_mesh: *world,
-                });
-                vec![(surface, false)]
-            }
-        }
-    }
-
-    fn quadric(&mut self, kind: Quadric, world_from_local: &DAffine3) -> (SurfaceId, bool) {
-        let local_from_world = world_from_local.inverse();
-        (
-            self.table.insert(Surface::Quadric {
-                kind,
-                local_from_world,
-            }),
-            false,
-        )
-    }
-
-    fn caps(&mut self, world: &DAffine3, z: [f64; 2]) -> Vec<(SurfaceId, bool)> {
-        [(DVec3::Z, z[1]), (DVec3::NEG_Z, z[0])]
-            .into_iter()
-            .filter(|(_, height)| height.is_finite())
-            .map(|(normal, height)| self.plane(world, normal, DVec3::new(0.0, 0.0, height)))
-            .collect()
-    }
-
-    /// The plane through `point` whose outward normal is `normal`, both in the local frame.
-    fn plane(&mut self, world: &DAffine3, normal: DVec3, point: DVec3) -> (SurfaceId, bool) {
-        // Normals go by the cofactor matrix, which keeps axis-aligned ones exact; its sign is the
-        // determinant's, so a mirrored frame still points outwards.
-        let m = world.matrix3;
-        let cofactor = m.y_axis.cross(m.z_axis) * normal.x
-            + m.z_axis.cross(m.x_axis) * normal.y
-            + m.x_axis.cross(m.y_axis) * normal.z;
-        let handed = if m.determinant() < 0.0 {
-            -cofactor
-        } else {
-            cofactor
-        };
-        let outward = (handed / handed.abs().max_element()).normalize();
-        let offset = outward.dot(world.transform_point3(point));
-        let upward = points_upward(outward);
-        let surface = if upward {
-            Surface::Plane {
-                normal: outward,
-                offset,
-            }
-        } else {
-            Surface::Plane {
-                normal: -outward,
-                offset: -offset,
-            }
-        };
-        (self.table.insert(surface), !upward)
-    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::csg::{evaluate, faces};
+    use crate::surface::implicit_value;
+    use octray_math::DVec3;
 
     fn contains(solid: &Solid, p: DVec3) -> bool {
-        let mut lowering = Lowering::new(10.0);
+        let mut lowering = Lowering::new(&SceneFrame::around_origin(10.0));
         let lowered = lowering.lower(solid);
         let (faces, surfaces, _) = lowering.finish();
         match lowered {
             Err(constant) => constant == Constant::True,
             Ok(code) => evaluate(code.words(), &|id: FaceId| {
                 let face = faces[id.0 as usize];
-                (surfaces[face.surface.0 as usize].implicit_value(p) > 0.0)
+                (implicit_value(&surfaces[face.surface.0 as usize], p) > 0.0)
                     == face.inside_is_positive
             }),
         }
@@ -386,7 +275,7 @@ mod tests {
     fn a_cutter_that_ends_in_the_face_it_cuts_shares_its_plane() {
         let plate = Solid::cuboid(DVec3::ZERO, DVec3::splat(10.0)).expect("valid");
         let drill = Solid::cylinder(2.0, 0.0, 10.0).expect("valid");
-        let mut lowering = Lowering::new(10.0);
+        let mut lowering = Lowering::new(&SceneFrame::around_origin(10.0));
         let code = lowering
             .lower(&Solid::difference([plate, drill]))
             .expect("not constant");
@@ -399,7 +288,7 @@ mod tests {
     #[test]
     fn the_empty_solid_disappears_from_every_operation() {
         let ball = Solid::sphere(1.0).expect("valid");
-        let mut lowering = Lowering::new(1.0);
+        let mut lowering = Lowering::new(&SceneFrame::around_origin(1.0));
         let with_empty = Solid::union([ball.clone(), Solid::empty()]);
         assert_eq!(lowering.lower(&with_empty).expect("a ball").literals(), 1);
         let nothing = Solid::intersection([ball.clone(), Solid::empty()]);

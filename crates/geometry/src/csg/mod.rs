@@ -8,6 +8,7 @@
 
 mod code;
 mod lower;
+mod sides;
 
 pub use code::{Code, Constant, changed_face, evaluate, faces, reduce, truth_on};
 pub use lower::{Face, Lowered, Lowering, MeshOperand};

@@ -4,16 +4,26 @@
 //! positive one. Solids are boolean expressions over sides (see [`crate::csg`]), so two operands
 //! that share a surface share every bit of its crossings.
 
-mod classify;
-mod crossings;
+mod cone;
+mod fingerprint;
+mod local_box;
+mod plane;
+mod round;
 mod table;
+#[cfg(test)]
+mod tests;
+mod torus;
 
-use octray_math::{DAffine3, DVec3};
+use octray_math::roots::SignChanges;
+use octray_math::{Aabb, DAffine3, DVec3, Ray};
 
+use local_box::LocalBox;
 pub(crate) use table::points_upward;
-pub use table::{SURFACE_TOLERANCE, SurfaceTable};
+pub use table::{PLACE_TOLERANCE, SURFACE_TOLERANCE, SurfaceTable};
+#[cfg(test)]
+pub(crate) use tests::implicit_value;
 
-/// A surface in world coordinates.
+/// A surface in the coordinates of the scene.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Surface {
     /// `normal . x = offset`; negative where `normal . x < offset`.
@@ -23,39 +33,35 @@ pub enum Surface {
         /// Distance from the origin along `normal`.
         offset: f64,
     },
-    /// A quadric that is canonical in its own frame.
-    Quadric {
+    /// A curved surface that is canonical in its own frame.
+    Curved {
         /// Which.
-        kind: Quadric,
+        canonical: Canonical,
         /// Invertible.
-        local_from_world: DAffine3,
+        local_from_scene: DAffine3,
     },
-    /// In its own frame the cone `x^2 + y^2 = (1 + slope z)^2`, both nappes: radius 1 at height 0.
+}
+
+/// The curved surfaces, each in the frame in which its formula is simplest.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Canonical {
+    /// `x^2 + y^2 + z^2 = 1`.
+    Sphere,
+    /// `x^2 + y^2 = 1`.
+    Cylinder,
+    /// The cone `x^2 + y^2 = (1 + slope z)^2`, both nappes: radius 1 at height 0.
     ///
     /// Not in the frame of its apex: that lies far away for a frustum which is nearly a cylinder,
     /// and would take all digits along.
     Cone {
         /// Change of the radius per height, in `[-1, 0)` for the frusta that solids are made of.
         slope: f64,
-        /// Invertible.
-        local_from_world: DAffine3,
     },
-    /// In its own frame the torus about z with major radius 1.
+    /// The torus about z with major radius 1.
     Torus {
         /// Minor radius over major radius.
         minor: f64,
-        /// Invertible.
-        local_from_world: DAffine3,
     },
-}
-
-/// The quadrics whose negative side is a primitive, in their canonical frames.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub enum Quadric {
-    /// `x^2 + y^2 + z^2 = 1`.
-    Sphere,
-    /// `x^2 + y^2 = 1`.
-    Cylinder,
 }
 
 /// On which side of a surface all points of a box lie.
@@ -70,6 +76,43 @@ pub enum Side {
 }
 
 impl Surface {
+    /// Visits the parameters at which the line changes sides, increasing, and returns whether it
+    /// comes from the negative side.
+    ///
+    /// A line that touches the surface does not change sides. The number of changes is even for
+    /// the bounded surfaces, whatever the rounding.
+    ///
+    /// Every solver moves its origin to the point of the line that is closest to the surface's
+    /// centre first (Haines et al., *Precision Improvements for Ray/Sphere Intersection*, Ray
+    /// Tracing Gems, chapter 7): then the constant term is a distance, not a difference of large
+    /// numbers.
+    pub fn crossings(&self, ray: &Ray, mut visit: impl FnMut(f64)) -> bool {
+        let changes = match self {
+            Self::Plane { normal, offset } => plane::crossings(*normal, *offset, ray),
+            Self::Curved {
+                canonical,
+                local_from_scene,
+            } => {
+                let Ray { origin, direction } = ray.transformed(local_from_scene);
+                canonical.crossings(origin, direction)
+            }
+        };
+        changes.as_slice().iter().for_each(|&t| visit(t));
+        changes.starts_negative
+    }
+
+    /// The side on which all of a bounded box lies. [`Side::Both`] too often, never too seldom.
+    #[must_use]
+    pub fn classify(&self, bounds: &Aabb) -> Side {
+        match self {
+            Self::Plane { normal, offset } => plane::classify(*normal, *offset, bounds),
+            Self::Curved {
+                canonical,
+                local_from_scene,
+            } => canonical.classify(&LocalBox::new(bounds, local_from_scene)),
+        }
+    }
+
     /// The unit normal at a point of the surface, pointing to the positive side.
     ///
     /// Where the surface has none (the apex of a cone) it is the axis.
@@ -77,82 +120,73 @@ impl Surface {
     pub fn normal(&self, point: DVec3) -> DVec3 {
         match self {
             Self::Plane { normal, .. } => *normal,
-            Self::Quadric {
-                kind,
-                local_from_world,
+            Self::Curved {
+                canonical,
+                local_from_scene,
             } => {
-                let p = local_from_world.transform_point3(point);
-                let gradient = match kind {
-                    Quadric::Sphere => p,
-                    Quadric::Cylinder => DVec3::new(p.x, p.y, 0.0),
-                };
-                pull_back(local_from_world, gradient)
+                let p = local_from_scene.transform_point3(point);
+                pull_back(local_from_scene, canonical.gradient(p))
             }
-            Self::Cone {
-                slope,
-                local_from_world,
-            } => {
-                let p = local_from_world.transform_point3(point);
-                let gradient = DVec3::new(p.x, p.y, -slope * (1.0 + slope * p.z));
-                pull_back(local_from_world, gradient)
-            }
-            Self::Torus {
-                local_from_world, ..
-            } => {
-                let p = local_from_world.transform_point3(point);
-                let rho = (p.x * p.x + p.y * p.y).sqrt();
-                let ring = if rho > 0.0 {
-                    DVec3::new(p.x / rho, p.y / rho, 0.0)
-                } else {
-                    DVec3::X
-                };
-                pull_back(local_from_world, p - ring)
-            }
+        }
+    }
+
+    /// The work of crossing it, in planes.
+    #[must_use]
+    pub const fn cost(&self) -> f64 {
+        match self {
+            Self::Plane { .. } => 1.0,
+            Self::Curved { canonical, .. } => canonical.cost(),
         }
     }
 }
 
-/// A gradient in the local frame as a unit normal in the world's.
-fn pull_back(local_from_world: &DAffine3, gradient: DVec3) -> DVec3 {
-    let m = local_from_world.matrix3;
+impl Canonical {
+    /// See [`Surface::crossings`]; the line in the local frame.
+    fn crossings(&self, origin: DVec3, direction: DVec3) -> SignChanges {
+        match self {
+            Self::Sphere => round::sphere(origin, direction),
+            Self::Cylinder => round::cylinder(origin, direction),
+            Self::Cone { slope } => cone::crossings(*slope, origin, direction),
+            Self::Torus { minor } => torus::crossings(*minor, origin, direction),
+        }
+    }
+
+    fn classify(&self, local: &LocalBox) -> Side {
+        match self {
+            Self::Sphere => round::classify(round::SPHERE, local),
+            Self::Cylinder => round::classify(round::CYLINDER, local),
+            Self::Cone { slope } => cone::classify(*slope, local),
+            Self::Torus { minor } => torus::classify(*minor, local),
+        }
+    }
+
+    /// A vector towards the positive side, normal to the surface; of any length, 0 where there is
+    /// no normal.
+    fn gradient(&self, p: DVec3) -> DVec3 {
+        match self {
+            Self::Sphere => p,
+            Self::Cylinder => p * round::CYLINDER,
+            Self::Cone { slope } => cone::gradient(*slope, p),
+            Self::Torus { .. } => torus::gradient(p),
+        }
+    }
+
+    const fn cost(&self) -> f64 {
+        match self {
+            Self::Sphere | Self::Cylinder => 2.0,
+            Self::Cone { .. } => 3.0,
+            Self::Torus { .. } => 5.0,
+        }
+    }
+}
+
+/// A gradient in the local frame as a unit normal in the scene's.
+fn pull_back(local_from_scene: &DAffine3, gradient: DVec3) -> DVec3 {
+    let m = local_from_scene.matrix3;
     let normal = m.transpose() * gradient;
     // Scaled first: entries of a huge or tiny object's matrix would overflow when squared.
     let largest = normal.abs().max_element();
     (normal / largest)
         .try_normalize()
         .unwrap_or_else(|| (m.transpose() * DVec3::Z).normalize_or(DVec3::Z))
-}
-
-#[cfg(test)]
-impl Surface {
-    /// The implicit function whose sign is the side, written down independently of the solvers.
-    pub(crate) fn implicit_value(&self, p: DVec3) -> f64 {
-        match self {
-            Surface::Plane { normal, offset } => normal.dot(p) - offset,
-            Surface::Quadric {
-                kind,
-                local_from_world,
-            } => {
-                let q = local_from_world.transform_point3(p);
-                match kind {
-                    Quadric::Sphere => q.length_squared() - 1.0,
-                    Quadric::Cylinder => q.x * q.x + q.y * q.y - 1.0,
-                }
-            }
-            Surface::Cone {
-                slope,
-                local_from_world,
-            } => {
-                let q = local_from_world.transform_point3(p);
-                libm::hypot(q.x, q.y) - (1.0 + slope * q.z).abs()
-            }
-            Surface::Torus {
-                minor,
-                local_from_world,
-            } => {
-                let q = local_from_world.transform_point3(p);
-                libm::hypot(libm::hypot(q.x, q.y) - 1.0, q.z) - minor
-            }
-        }
-    }
 }

@@ -120,13 +120,9 @@ impl Cells<'_> {
     /// The work of a surface in a cell, in planes. A line crosses each surface once, however many
     /// cells ask, so the costly ones count less than a single crossing costs.
     fn cost(&self, surface: u32) -> f64 {
-        match self.surfaces.get(surface as usize) {
-            Some(Surface::Plane { .. }) => 1.0,
-            Some(Surface::Quadric { .. }) => 2.0,
-            Some(Surface::Cone { .. }) => 3.0,
-            Some(Surface::Torus { .. }) => 5.0,
-            None => 8.0,
-        }
+        self.surfaces
+            .get(surface as usize)
+            .map_or(8.0, Surface::cost)
     }
 }
 
@@ -153,14 +149,6 @@ impl Subdivide for Cells<'_> {
             let is_shell = self.ranked[object.rank as usize].shell;
             let (expression, clip) = (parent.expression(object), parent.clip(object));
             content.add(object.rank, is_shell, expression, clip, &mut truth);
-        }
-        // What a higher priority fills hides the boundaries of all that have a lower one.
-        if let Some(base) = content.base.checked_sub(1) {
-            let hides = |rank: u32| {
-                let object = &self.ranked[rank as usize];
-                !object.shell && object.priority < self.ranked[base as usize].priority
-            };
-            content.objects.retain(|object| !hides(object.rank));
         }
         content.finish(self.faces);
         content

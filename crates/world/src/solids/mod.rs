@@ -16,7 +16,7 @@ use octray_tree::{CellTree, CellTreeStats, Node};
 
 pub(crate) use leaf::Leaves;
 pub(crate) use roots::Scratch;
-pub(crate) use sweep::Interface;
+pub(crate) use sweep::{Change, Interface, Passage};
 
 use crate::line::Line;
 use crate::{Counters, Region};
@@ -63,15 +63,15 @@ pub(crate) struct Solids {
 impl Solids {
     /// Sweeps along the line, cell by cell and front to back.
     ///
-    /// `visit` gets every interface and returns the parameter beyond which nothing matters any
-    /// more. An interface near a cell's face may be visited from both sides.
+    /// `visit` gets every change and returns the parameter beyond which nothing matters any more. A
+    /// change near a cell's face may be visited from both sides.
     pub(crate) fn sweep_line(
         &self,
         line: &Line,
         limit: f64,
         scratch: &mut Scratch,
         counters: &mut Counters,
-        mut visit: impl FnMut(&Interface) -> f64,
+        mut visit: impl FnMut(&Change<'_>) -> f64,
     ) {
         scratch.begin(self.surfaces.len() + self.meshes.len());
         let all = Interval::new(line.origin, line.end);
@@ -113,7 +113,7 @@ impl Solids {
         limit: f64,
         scratch: &mut Scratch,
         counters: &mut Counters,
-        visit: &mut impl FnMut(&Interface) -> f64,
+        visit: &mut impl FnMut(&Change<'_>) -> f64,
     ) -> f64 {
         match self.outer {
             Some(leaf) if part.start <= limit && !part.is_empty() => {
@@ -121,6 +121,40 @@ impl Solids {
             }
             _ => limit,
         }
+    }
+
+    /// Every passage of the line into or out of a solid, in order of (parameter, rank), to `found`,
+    /// which is cleared first. Of two leaves that overlap, both see the same.
+    pub(crate) fn passages(
+        &self,
+        line: &Line,
+        found: &mut Vec<Passage>,
+        scratch: &mut Scratch,
+        counters: &mut Counters,
+    ) {
+        found.clear();
+        self.sweep_line(line, f64::INFINITY, scratch, counters, |change| {
+            found.extend(change.passages());
+            f64::INFINITY
+        });
+        found.retain(|p| p.s < line.end);
+        found.sort_unstable_by(|a, b| a.s.total_cmp(&b.s).then(a.rank.cmp(&b.rank)));
+        found.dedup_by_key(|p| (p.s, p.rank));
+    }
+
+    /// The ranks of the unbounded solids that hold the start of the line, increasing, to `ranks`,
+    /// which is cleared first. (A bounded solid that holds it is left later on.)
+    pub(crate) fn unbounded_at_start(
+        &self,
+        line: &Line,
+        ranks: &mut Vec<u32>,
+        scratch: &mut Scratch,
+        counters: &mut Counters,
+    ) {
+        ranks.clear();
+        let Some(leaf) = self.outer else { return };
+        scratch.begin(self.surfaces.len() + self.meshes.len());
+        self.solids_in(line, leaf, line.origin, ranks, scratch, counters);
     }
 
     /// The region at parameter `s` of the line.
@@ -151,6 +185,14 @@ impl Solids {
             0 => Region::OUTSIDE,
             rank => Region::of(self.ranked[rank as usize - 1].object),
         }
+    }
+
+    pub(crate) fn object_of(&self, rank: u32) -> ObjectId {
+        self.ranked[rank as usize].object
+    }
+
+    pub(crate) fn priority_of(&self, rank: u32) -> i32 {
+        self.ranked[rank as usize].priority
     }
 
     pub(crate) fn tree_stats(&self) -> Option<&CellTreeStats> {

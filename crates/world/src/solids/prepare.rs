@@ -4,7 +4,7 @@ use std::cmp::Ordering;
 
 use octray_geometry::csg::{Constant, Face, Lowered, Lowering, MeshOperand};
 use octray_geometry::mesh::{MeshError, MeshSolid};
-use octray_geometry::{FaceId, MaterialId, Sheet, Solid};
+use octray_geometry::{FaceId, MaterialId, SceneFrame, Sheet, Solid};
 use octray_math::Aabb;
 use octray_scene::{Object, ObjectId, Scene, Shape};
 use octray_tree::{CellTree, Criteria, WideTreeConfig, cell_tree};
@@ -18,22 +18,35 @@ struct Candidate<'a> {
     object: &'a Object,
     boundary: &'a Solid,
     clip: Option<&'a Solid>,
+    /// In the coordinates of the scene.
     bounds: Aabb,
 }
 
 impl<'a> Candidate<'a> {
-    fn new(index: usize, object: &'a Object) -> Option<Self> {
+    fn new(index: usize, object: &'a Object, frame: &SceneFrame) -> Option<Self> {
         let (boundary, clip) = match &object.shape {
             Shape::Solid(solid) => (solid, None),
             Shape::Sheet(Sheet::Shell { solid, clip }) => (solid, Some(clip)),
             Shape::Sheet(Sheet::Mesh { .. }) => return None,
+        };
+        // By the same transforms as the faces, so that rounding far from the origin moves both.
+        let scene_from_world = frame.scene_from_world();
+        let bounds = [Some(boundary), clip]
+            .into_iter()
+            .flatten()
+            .map(|solid| solid.bounds_in(&scene_from_world))
+            .fold(Aabb::ALL, Aabb::intersection);
+        let bounds = if bounds.is_empty() {
+            Aabb::EMPTY
+        } else {
+            bounds
         };
         Some(Self {
             id: ObjectId(index as u32),
             object,
             boundary,
             clip,
-            bounds: object.shape.bounds(),
+            bounds,
         })
     }
 
@@ -60,15 +73,16 @@ impl Solids {
     /// A mesh operand cannot be used as a solid; the object's name comes with the reason.
     pub(crate) fn prepare(
         scene: &Scene,
+        frame: &SceneFrame,
         criteria: Option<&Criteria>,
         triangles: Option<&WideTreeConfig>,
     ) -> Result<Self, (String, MeshError)> {
         let objects = scene.objects().iter().enumerate();
         let mut candidates: Vec<Candidate<'_>> = objects
-            .filter_map(|(index, object)| Candidate::new(index, object))
+            .filter_map(|(index, object)| Candidate::new(index, object, frame))
             .collect();
         // Faces are numbered in the order of the objects, ranks are a matter of this module.
-        let mut lowering = Lowering::new(scene_size(&candidates));
+        let mut lowering = Lowering::new(frame);
         let mut lowered = Vec::with_capacity(candidates.len());
         let mut owners = Vec::new();
         for candidate in &candidates {
@@ -114,7 +128,7 @@ impl Solids {
         let bounds = candidates
             .iter()
             .map(|c| c.bounds)
-            .filter(|b| b.is_bounded())
+            .filter(Aabb::is_bounded)
             .fold(Aabb::EMPTY, Aabb::union);
         let mut contents = Vec::new();
         let mut tree = None;
@@ -205,16 +219,6 @@ impl Ranked {
     }
 }
 
-/// The largest coordinate of the bounded objects, or 1: the unit of the surface table's tolerance.
-fn scene_size(candidates: &[Candidate<'_>]) -> f64 {
-    let largest = candidates
-        .iter()
-        .filter(|c| c.bounds.is_bounded() && !c.bounds.is_empty())
-        .map(|c| c.bounds.min.abs().max(c.bounds.max.abs()).max_element())
-        .fold(0.0, f64::max);
-    if largest > 0.0 { largest } else { 1.0 }
-}
-
 /// Adds an object with nothing decided but what is constant by itself.
 fn add(content: &mut Content, rank: u32, shell: bool, boundary: &Lowered, clip: Option<&Lowered>) {
     let expression = match boundary {
@@ -248,7 +252,7 @@ fn mesh_surfaces(
     let mut first_face = faces.len() as u32;
     let mut meshes = Vec::with_capacity(operands.len());
     for (operand, literal) in operands.iter().zip(literals) {
-        let solid = MeshSolid::new(&operand.mesh, &operand.world_from_mesh, config);
+        let solid = MeshSolid::new(&operand.mesh, &operand.scene_from_mesh, config);
         let solid = solid.map_err(|error| {
             let object = ranked[face_owner[literal as usize] as usize].object;
             (scene.objects()[object.0 as usize].name.clone(), error)

@@ -6,6 +6,7 @@ use std::ops::Range;
 use super::Solids;
 use super::sweep::Event;
 use crate::Counters;
+use crate::chords::ChordScratch;
 use crate::line::Line;
 use octray_geometry::FaceId;
 use octray_tree::{WalkCost, WalkStack};
@@ -57,6 +58,7 @@ pub(crate) struct Scratch {
     pub(super) inside: Vec<bool>,
     pub(super) inside_after: Vec<bool>,
     pub(super) stack: WalkStack,
+    pub(crate) chords: ChordScratch,
     mesh_roots: Vec<octray_geometry::mesh::MeshCrossing>,
 }
 
@@ -89,10 +91,8 @@ impl Solids {
             let starts_negative = match self.surfaces.get(index) {
                 Some(surface) => {
                     counters.surface_tests += 1;
-                    let changes = surface.crossings(&line.ray);
-                    let root = |&s: &f64| Root { s, triangle: 0 };
-                    scratch.roots.extend(changes.as_slice().iter().map(root));
-                    changes.starts_negative
+                    let roots = &mut scratch.roots;
+                    surface.crossings(&line.ray, |s| roots.push(Root { s, triangle: 0 }))
                 }
                 None => {
                     let mesh = &self.meshes[index - self.surfaces.len()].solid;

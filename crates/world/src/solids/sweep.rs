@@ -34,8 +34,138 @@ pub(crate) struct Interface {
     pub(crate) to: Region,
 }
 
+/// What happens at one parameter of a line: some objects are entered or left.
+pub(crate) struct Change<'a> {
+    solids: &'a Solids,
+    view: &'a LeafView<'a>,
+    group: &'a [Event],
+    /// The sides behind it.
+    negative: &'a [bool],
+    before: &'a [bool],
+    after: &'a [bool],
+}
+
+/// One object's part of a change.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Passage {
+    /// In the line's parameter.
+    pub(crate) s: f64,
+    /// Index into the ranked objects.
+    pub(crate) rank: u32,
+    pub(crate) entering: bool,
+    /// Of the object.
+    pub(crate) face: FaceId,
+}
+
+impl Change<'_> {
+    fn truth(&self, face: FaceId) -> bool {
+        self.solids.truth(self.negative, face)
+    }
+
+    fn truth_before(&self, face: FaceId) -> bool {
+        let surface = self.solids.faces[face.0 as usize].surface.0;
+        let crossings = self.group.iter().filter(|e| e.surface == surface).count();
+        self.truth(face) ^ (crossings % 2 == 1)
+    }
+
+    /// The leaf's objects that are entered or left.
+    fn changed(&self) -> impl Iterator<Item = (usize, &LeafObject)> {
+        let objects = self.view.objects.iter().enumerate();
+        objects.filter(|(index, _)| self.before[*index] != self.after[*index])
+    }
+
+    /// The face of a changed object that is crossed.
+    fn face(&self, object: &LeafObject) -> Option<FaceId> {
+        let face = changed_face(
+            self.view.expression(object),
+            &|face| self.truth_before(face),
+            &|face| self.truth(face),
+        )?;
+        Some(self.solids.triangle_face(face, self.group))
+    }
+
+    /// Every solid that is entered or left, whether or not another one hides it.
+    pub(crate) fn passages(&self) -> impl Iterator<Item = Passage> {
+        self.changed().filter_map(|(index, object)| {
+            if self.solids.ranked[object.rank as usize].shell {
+                return None;
+            }
+            Some(Passage {
+                s: self.group[0].s,
+                rank: object.rank,
+                entering: self.after[index],
+                face: self.face(object)?,
+            })
+        })
+    }
+
+    /// The boundary that is seen here, if any is.
+    pub(crate) fn interface(&self) -> Option<Interface> {
+        let Self { solids, view, .. } = self;
+        let (from, to) = (
+            solids.region(view, self.before),
+            solids.region(view, self.after),
+        );
+        let mut chosen: Option<(u8, usize)> = None;
+        for (index, object) in self.changed() {
+            let ranked = &solids.ranked[object.rank as usize];
+            let class = if ranked.shell {
+                let counts = view.clip(object).is_none_or(|clip| {
+                    evaluate(clip, &|face| self.truth(face))
+                        || evaluate(clip, &|face| self.truth_before(face))
+                });
+                if !counts {
+                    continue;
+                }
+                3
+            } else if self.is_hidden(ranked.priority) {
+                continue;
+            } else if Some(ranked.object) == to.object() {
+                // What the line comes to see is the surface of what it enters.
+                0
+            } else if Some(ranked.object) == from.object() {
+                1
+            } else {
+                2
+            };
+            if chosen.is_none_or(|(best, _)| class < best) {
+                chosen = Some((class, index));
+            }
+        }
+        let (_, index) = chosen?;
+        Some(Interface {
+            s: self.group[0].s,
+            face: self.face(&view.objects[index])?,
+            entering: self.after[index],
+            from,
+            to,
+        })
+    }
+
+    /// Whether a solid of higher priority is on both sides.
+    fn is_hidden(&self, priority: i32) -> bool {
+        let ranked = &self.solids.ranked;
+        if !self.solids.priorities_differ {
+            return false;
+        }
+        let fills = self.view.base.checked_sub(1);
+        let fills = fills.is_some_and(|rank| ranked[rank as usize].priority > priority);
+        let inside = self.before.iter().zip(self.after).map(|(b, a)| *b && *a);
+        fills
+            || self
+                .view
+                .objects
+                .iter()
+                .zip(inside)
+                .any(|(object, inside)| {
+                    let other = &ranked[object.rank as usize];
+                    inside && !other.shell && other.priority > priority
+                })
+    }
+}
+
 impl Solids {
-    /// Visits the interfaces of one leaf in `span`, in order, and returns the new limit.
+    /// Visits the changes in one leaf in `span`, in order, and returns the new limit.
     #[expect(
         clippy::too_many_arguments,
         reason = "one hot function with its working memory"
@@ -48,7 +178,7 @@ impl Solids {
         mut limit: f64,
         scratch: &mut Scratch,
         counters: &mut Counters,
-        visit: &mut impl FnMut(&Interface) -> f64,
+        visit: &mut impl FnMut(&Change<'_>) -> f64,
     ) -> f64 {
         let view = self.leaves.get(leaf);
         scratch.events.clear();
@@ -82,10 +212,15 @@ impl Solids {
                 negative[event.surface as usize] ^= true;
             }
             self.memberships(&view, negative, inside_after);
-            if inside != inside_after
-                && let Some(found) = self.interface(&view, group, negative, inside, inside_after)
-            {
-                limit = limit.min(visit(&found));
+            if inside != inside_after {
+                limit = limit.min(visit(&Change {
+                    solids: self,
+                    view: &view,
+                    group,
+                    negative,
+                    before: inside,
+                    after: inside_after,
+                }));
             }
             std::mem::swap(inside, inside_after);
         }
@@ -169,81 +304,27 @@ impl Solids {
         self.region(&view, inside)
     }
 
-    /// The boundary at a group of crossings, if any that counts. `negative` is the state behind it.
-    fn interface(
+    /// The ranks of the leaf's solids that hold the point at `s`, increasing.
+    pub(super) fn solids_in(
         &self,
-        view: &LeafView<'_>,
-        group: &[Event],
-        negative: &[bool],
-        before: &[bool],
-        after: &[bool],
-    ) -> Option<Interface> {
-        let (from, to) = (self.region(view, before), self.region(view, after));
-        let mut chosen: Option<(u8, usize)> = None;
-        for (index, object) in view.objects.iter().enumerate() {
-            if before[index] == after[index] {
-                continue;
-            }
-            let ranked = &self.ranked[object.rank as usize];
-            let class = if ranked.shell {
-                let counts = view.clip(object).is_none_or(|clip| {
-                    evaluate(clip, &|face| self.truth(negative, face))
-                        || evaluate(clip, &|face| self.truth_before(negative, group, face))
-                });
-                if !counts {
-                    continue;
-                }
-                3
-            } else if self.is_hidden(view, ranked.priority, before, after) {
-                continue;
-            } else if Some(ranked.object) == to.object() {
-                // What the line comes to see is the surface of what it enters.
-                0
-            } else if Some(ranked.object) == from.object() {
-                1
-            } else {
-                2
-            };
-            if chosen.is_none_or(|(best, _)| class < best) {
-                chosen = Some((class, index));
-            }
-        }
-        let (_, index) = chosen?;
-        let face = changed_face(
-            view.expression(&view.objects[index]),
-            &|face| self.truth_before(negative, group, face),
-            &|face| self.truth(negative, face),
-        )?;
-        Some(Interface {
-            s: group[0].s,
-            face: self.triangle_face(face, group),
-            entering: after[index],
-            from,
-            to,
-        })
-    }
-
-    /// Whether a solid of higher priority is on both sides.
-    fn is_hidden(
-        &self,
-        view: &LeafView<'_>,
-        priority: i32,
-        before: &[bool],
-        after: &[bool],
-    ) -> bool {
-        if !self.priorities_differ {
-            return false;
-        }
-        view.objects.iter().enumerate().any(|(index, object)| {
-            let ranked = &self.ranked[object.rank as usize];
-            before[index] && after[index] && !ranked.shell && ranked.priority > priority
-        })
-    }
-
-    fn truth_before(&self, negative: &[bool], group: &[Event], face: FaceId) -> bool {
-        let surface = self.faces[face.0 as usize].surface.0;
-        let crossings = group.iter().filter(|e| e.surface == surface).count();
-        self.truth(negative, face) ^ (crossings % 2 == 1)
+        line: &Line,
+        leaf: u32,
+        s: f64,
+        ranks: &mut Vec<u32>,
+        scratch: &mut Scratch,
+        counters: &mut Counters,
+    ) {
+        let view = self.leaves.get(leaf);
+        self.place(&view, line, s, scratch, counters, None);
+        let Scratch {
+            negative, inside, ..
+        } = scratch;
+        self.memberships(&view, negative, inside);
+        let held = view.objects.iter().zip(inside.iter()).filter(|(_, i)| **i);
+        ranks.extend(held.map(|(object, _)| object.rank));
+        ranks.extend(view.base.checked_sub(1));
+        ranks.retain(|&rank| !self.ranked[rank as usize].shell);
+        ranks.sort_unstable();
     }
 
     /// A face of a mesh operand becomes that of the triangle which was crossed.

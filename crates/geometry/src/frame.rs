@@ -1,0 +1,101 @@
+//! The coordinates in which a scene is worked on.
+
+use octray_math::{Aabb, DAffine3, DVec3};
+
+/// A scene far from the origin is moved there before anything is computed, so that its coordinates
+/// keep their digits: a millionth of a scene's size is the same everywhere.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SceneFrame {
+    /// The point of the world that becomes the origin.
+    pub origin: DVec3,
+    /// The largest coordinate of the bounded objects in these coordinates; 1 without any.
+    pub size: f64,
+}
+
+impl SceneFrame {
+    /// The world's own coordinates, for a scene of this size.
+    #[must_use]
+    pub const fn around_origin(size: f64) -> Self {
+        Self {
+            origin: DVec3::ZERO,
+            size,
+        }
+    }
+
+    /// For bounded objects in this box (which may be empty).
+    ///
+    /// The origin stays where it is unless the scene lies outside of its own size around it, and
+    /// moves by multiples of a power of two: what is a short number stays one.
+    #[must_use]
+    pub fn new(bounds: &Aabb) -> Self {
+        if bounds.is_empty() || !bounds.is_bounded() {
+            return Self::around_origin(1.0);
+        }
+        let half = bounds.half_size().max_element();
+        let step = if half > 0.0 {
+            libm::ldexp(2.0, libm::ilogb(half))
+        } else {
+            0.0
+        };
+        let place = |x: f64| {
+            let steps = libm::trunc(x / step);
+            // A point, or so far away that no digit of its size is left.
+            if steps.is_finite() { steps * step } else { x }
+        };
+        let center = bounds.center();
+        let origin = DVec3::new(place(center.x), place(center.y), place(center.z));
+        let moved = |corner: DVec3| (corner - origin).abs().max_element();
+        let size = moved(bounds.min).max(moved(bounds.max));
+        Self {
+            origin,
+            size: if size > 0.0 { size } else { 1.0 },
+        }
+    }
+
+    /// From the user's coordinates to these.
+    #[must_use]
+    pub fn scene_from_world(&self) -> DAffine3 {
+        DAffine3::from_translation(-self.origin)
+    }
+
+    /// The largest coordinate that the objects have in the world.
+    #[must_use]
+    pub fn largest(&self) -> f64 {
+        self.origin.abs().max_element() + self.size
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_scene_around_the_origin_stays_there() {
+        let bounds = Aabb::new(DVec3::new(0.0, -3.0, -1.0), DVec3::new(10.0, 3.0, 9.0));
+        let frame = SceneFrame::new(&bounds);
+        assert_eq!(frame.origin, DVec3::ZERO);
+        assert_eq!(frame.size, 10.0);
+    }
+
+    #[test]
+    fn a_far_scene_is_moved_by_a_short_number_to_within_its_size() {
+        let offset = DVec3::new(123_456.7, -1e9, 0.3);
+        let bounds = Aabb::new(offset - DVec3::ONE, offset + DVec3::ONE);
+        let frame = SceneFrame::new(&bounds);
+        assert_eq!(frame.origin, DVec3::new(123_456.0, -1e9, 0.0));
+        assert!(frame.size <= 3.0);
+        assert!(frame.largest() >= 1e9);
+    }
+
+    #[test]
+    fn scaling_by_a_power_of_two_scales_the_frame() {
+        let bounds = Aabb::new(DVec3::new(70.1, -3.3, 12.0), DVec3::new(75.9, 3.0, 19.0));
+        let frame = SceneFrame::new(&bounds);
+        for k in [-30, 30] {
+            let scale = libm::ldexp(1.0, k);
+            let scaled = SceneFrame::new(&Aabb::new(bounds.min * scale, bounds.max * scale));
+            assert_eq!(scaled.origin, frame.origin * scale);
+            assert_eq!(scaled.size, frame.size * scale);
+        }
+    }
+}

@@ -1,0 +1,266 @@
+//! The chords of a ray: every stretch of it that lies in a solid.
+
+use octray_geometry::FaceId;
+use octray_math::DVec3;
+use octray_scene::ObjectId;
+
+use crate::line::Line;
+use crate::solids::{Passage, Solids};
+use crate::{Counters, Hit, RayQuery, Region, World};
+
+/// Whose chords are listed where solids overlap.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Overlaps {
+    /// Every point belongs to one solid, its region (see [`Region`]): chords never overlap.
+    #[default]
+    Regions,
+    /// A solid takes space only from those of lower explicit priority; else chords may overlap.
+    Priorities,
+    /// Every solid as if it were alone.
+    Objects,
+}
+
+/// A stretch of a ray inside one solid, of positive length.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Chord {
+    /// The solid.
+    pub object: ObjectId,
+    /// Where it begins.
+    pub enter: ChordEnd,
+    /// Where it ends.
+    pub exit: ChordEnd,
+}
+
+/// One end of a chord.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ChordEnd {
+    /// In units of the ray's direction. 0 (on a whole line `-inf`) where the ray starts inside,
+    /// `inf` where it never leaves.
+    pub t: f64,
+    /// The face that is crossed there, [`FaceId::NONE`] where the ray starts or never leaves.
+    pub face: FaceId,
+    /// Whether the face belongs to another solid, which displaces this one: its outward normal
+    /// points into the chord.
+    pub displaced: bool,
+}
+
+impl Chord {
+    /// `exit.t - enter.t`, in units of the ray's direction.
+    #[must_use]
+    pub fn length(&self) -> f64 {
+        self.exit.t - self.enter.t
+    }
+}
+
+/// A chord that goes on, by its index.
+#[derive(Clone, Copy, Debug)]
+struct Open {
+    rank: u32,
+    chord: usize,
+}
+
+/// Working memory of one thread.
+#[derive(Debug, Default)]
+pub(crate) struct ChordScratch {
+    passages: Vec<Passage>,
+    /// Ranks of the solids that hold the point one is at, increasing.
+    held: Vec<u32>,
+    /// Of these, the ones whose chords go on there.
+    visible: Vec<u32>,
+    open: Vec<Open>,
+}
+
+impl World {
+    /// All chords of the ray, ordered by where they begin, then by rank; `chords` is cleared first.
+    ///
+    /// Over `t > 0`, or with `whole_line` over all `t`. Sheets have no inside and no chords. A ray
+    /// that is not finite or has no direction has none either.
+    pub fn chords(
+        &self,
+        query: &RayQuery,
+        whole_line: bool,
+        overlaps: Overlaps,
+        chords: &mut Vec<Chord>,
+        counters: &mut Counters,
+    ) {
+        chords.clear();
+        counters.rays += 1;
+        let Some(mut line) = Line::new(query, &self.place) else {
+            return;
+        };
+        if whole_line {
+            line = line.whole();
+        }
+        self.scratch.with(|scratch| {
+            let mut own = std::mem::take(&mut scratch.chords);
+            self.solids
+                .passages(&line, &mut own.passages, scratch, counters);
+            self.solids
+                .unbounded_at_start(&line, &mut own.held, scratch, counters);
+            collect(&self.solids, &line, overlaps, &mut own, chords);
+            scratch.chords = own;
+        });
+    }
+
+    /// How many boundaries the ray crosses: where a solid is entered or left, as
+    /// [`Overlaps::Priorities`] has it, and the sheets. Two solids that touch make two.
+    pub fn count_crossings(
+        &self,
+        query: &RayQuery,
+        whole_line: bool,
+        chords: &mut Vec<Chord>,
+        counters: &mut Counters,
+    ) -> u64 {
+        self.chords(query, whole_line, Overlaps::Priorities, chords, counters);
+        let ends = chords.iter().flat_map(|c| [c.enter.face, c.exit.face]);
+        let crossed = ends.filter(|face| *face != FaceId::NONE).count();
+        let mut sheets = 0;
+        if let Some(mut line) = Line::new(query, &self.place) {
+            if whole_line {
+                line = line.whole();
+            }
+            self.sheets.visit_line(&line, f64::INFINITY, counters, |_| {
+                sheets += 1;
+                f64::INFINITY
+            });
+        }
+        crossed as u64 + sheets
+    }
+
+    /// The unit normal at an end of one of the ray's chords, pointing out of the chord's solid (or
+    /// of what is left of it); zero where no face is crossed.
+    #[must_use]
+    pub fn chord_normal(&self, query: &RayQuery, end: &ChordEnd) -> DVec3 {
+        if end.face == FaceId::NONE {
+            return DVec3::ZERO;
+        }
+        let hit = Hit {
+            t: end.t,
+            face: end.face,
+            ..Hit::MISS
+        };
+        let normal = self.interact(query, &hit).normal;
+        if end.displaced { -normal } else { normal }
+    }
+
+    /// The region of each point of the world; on a boundary, that of one of its sides. `regions` is
+    /// cleared first. A point that is not finite is outside.
+    pub fn regions(&self, points: &[DVec3], regions: &mut Vec<Region>, counters: &mut Counters) {
+        regions.clear();
+        self.scratch.with(|scratch| {
+            regions.extend(points.iter().map(|&point| {
+                let query = RayQuery::new(octray_math::Ray::new(point, DVec3::X));
+                match Line::new(&query, &self.place) {
+                    Some(line) => self.solids.region_at(&line, line.origin, scratch, counters),
+                    None => Region::OUTSIDE,
+                }
+            }));
+        });
+    }
+}
+
+/// Pairs the passages of a line to chords. `own.held` comes with the unbounded solids that hold the
+/// start.
+fn collect(
+    solids: &Solids,
+    line: &Line,
+    overlaps: Overlaps,
+    own: &mut ChordScratch,
+    chords: &mut Vec<Chord>,
+) {
+    let ChordScratch {
+        passages,
+        held,
+        visible,
+        open,
+    } = own;
+    add_held_at_start(passages, held);
+    open.clear();
+    list_visible(solids, overlaps, held, visible);
+    let ends = |s: f64, face: FaceId, displaced: bool| ChordEnd {
+        t: line.t(s),
+        face,
+        displaced,
+    };
+    let start = ends(line.origin, FaceId::NONE, false);
+    let never = ends(line.end, FaceId::NONE, false);
+    let begin = |rank: u32, enter: ChordEnd, chords: &mut Vec<Chord>| {
+        let chord = chords.len();
+        chords.push(Chord {
+            object: solids.object_of(rank),
+            enter,
+            exit: never,
+        });
+        Open { rank, chord }
+    };
+    open.extend(visible.iter().map(|&rank| begin(rank, start, chords)));
+    for group in passages.chunk_by(|a, b| a.s == b.s) {
+        for passage in group {
+            pass(held, passage);
+        }
+        // Where a solid begins or ends without a passage of its own, the first one's makes it so.
+        let end = |rank: u32| {
+            let own = group.iter().find(|p| p.rank == rank);
+            let face = own.unwrap_or(&group[0]).face;
+            ends(group[0].s, face, own.is_none())
+        };
+        list_visible(solids, overlaps, held, visible);
+        open.retain(|o| {
+            let stays = visible.binary_search(&o.rank).is_ok();
+            if !stays {
+                chords[o.chord].exit = end(o.rank);
+            }
+            stays
+        });
+        for &rank in visible.iter() {
+            if let Err(at) = open.binary_search_by_key(&rank, |o| o.rank) {
+                open.insert(at, begin(rank, end(rank), chords));
+            }
+        }
+    }
+    // Far from the ray's origin two parameters may round to one.
+    chords.retain(|chord| chord.enter.t < chord.exit.t);
+}
+
+/// Enters a solid or leaves it; whether it was left without having been entered.
+fn pass(held: &mut Vec<u32>, passage: &Passage) -> bool {
+    match (held.binary_search(&passage.rank), passage.entering) {
+        (Err(at), true) => held.insert(at, passage.rank),
+        (Ok(at), false) => {
+            held.remove(at);
+        }
+        (Err(_), false) => return true,
+        (Ok(_), true) => {}
+    }
+    false
+}
+
+/// Adds the solids that are left without having been entered: they hold the start.
+fn add_held_at_start(passages: &[Passage], held: &mut Vec<u32>) {
+    let unbounded = held.len();
+    let mut now = held.clone();
+    for passage in passages {
+        if pass(&mut now, passage) {
+            held.push(passage.rank);
+        }
+    }
+    if held.len() > unbounded {
+        held.sort_unstable();
+        held.dedup();
+    }
+}
+
+/// Of the solids that hold a point, by rank, those whose chords go on there.
+fn list_visible(solids: &Solids, overlaps: Overlaps, held: &[u32], visible: &mut Vec<u32>) {
+    let count = match overlaps {
+        Overlaps::Objects => held.len(),
+        Overlaps::Regions => held.len().min(1),
+        Overlaps::Priorities => {
+            let priority = |rank: &u32| solids.priority_of(*rank);
+            let first = held.first().map(priority);
+            held.partition_point(|rank| Some(priority(rank)) == first)
+        }
+    };
+    visible.clear();
+    visible.extend_from_slice(&held[..count]);
+}
