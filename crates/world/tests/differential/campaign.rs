@@ -56,7 +56,7 @@ impl Report {
     pub(crate) fn lines(&self) -> Vec<String> {
         let line = |name: &str, t: &Tally| {
             format!(
-                "{name}: {} rays, {} crossings, {} points compared, {:.3}% undecidable, {} of {} pieces blind",
+                "{name}: {} rays, {} crossings, {} points, {:.3}% undecidable, {} of {} pieces blind",
                 t.rays, t.crossings, t.samples, 100.0 * share(t), t.blind, t.pieces,
             )
         };
@@ -69,7 +69,7 @@ impl Report {
 }
 
 fn share(tally: &Tally) -> f64 {
-    tally.undecidable as f64 / (tally.samples + tally.undecidable).max(1) as f64
+    tally.undecidable as f64 / tally.samples.max(1) as f64
 }
 
 impl Campaign {

@@ -2,24 +2,24 @@
 
 use octray_geometry::surface::SURFACE_TOLERANCE;
 use octray_math::{DVec3, Ray};
-use octray_world::Hit;
+use octray_world::{Chord, Hit, Overlaps, Region};
 
 use crate::model::Subject;
-use crate::oracle::{Place, Sight};
+use crate::oracle::{Answer, Place, Sight};
 
 /// What was looked at.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Tally {
     pub(crate) rays: u64,
     pub(crate) crossings: u64,
-    /// Points compared, the undecidable ones not counted.
+    /// Points looked at.
     pub(crate) samples: u64,
-    /// Points so near to a boundary that rounding may decide.
+    /// Of these, the ones so near to a boundary that rounding may decide.
     pub(crate) undecidable: u64,
-    /// Pieces between crossings in which no point could be compared.
-    pub(crate) blind: u64,
-    /// Pieces between crossings.
+    /// Pieces of lines between crossings.
     pub(crate) pieces: u64,
+    /// Of these, the ones in which no point could be compared.
+    pub(crate) blind: u64,
 }
 
 impl Tally {
@@ -65,127 +65,194 @@ fn disagree(wrong: Wrong, details: String) -> Result<(), Disagreement> {
 /// The first disagreement.
 pub(crate) fn check(subject: &Subject, ray: Ray, tally: &mut Tally) -> Result<(), Disagreement> {
     tally.rays += 1;
-    let [hits, brute] = subject.crossings(ray, true);
-    if hits != brute {
-        return disagree(Wrong::Accelerator, format!("octree {hits:?}\nbrute {brute:?}"));
-    }
+    let hits = same(subject.crossings(ray, true))?;
     tally.crossings += hits.len() as u64;
-    check_chain(subject, &hits)?;
+    check_chain(&hits)?;
     check_half_line(subject, ray, &hits)?;
+    let objects = same(subject.chords(ray, Overlaps::Objects))?;
+    let regions = same(subject.chords(ray, Overlaps::Regions))?;
+    check_chords(subject, &objects)?;
     let sight = Sight::new(&subject.oracle, ray);
-    check_regions(subject, &sight, &hits, tally)?;
+    let engine = Engine {
+        hits: &hits,
+        objects: &objects,
+        regions: &regions,
+    };
+    check_points(&sight, &engine, tally)?;
     check_skins(subject, &sight, &hits)
 }
 
-fn object(region: octray_world::Region) -> Option<u32> {
-    region.object().map(|id| id.0)
+/// What the engine says of a line.
+struct Engine<'a> {
+    hits: &'a [Hit],
+    objects: &'a [Chord],
+    regions: &'a [Chord],
 }
 
-fn check_chain(subject: &Subject, hits: &[Hit]) -> Result<(), Disagreement> {
-    for pair in hits.windows(2) {
-        let alternates = !subject.is_single || pair[0].entering != pair[1].entering;
-        if !(pair[0].t <= pair[1].t && pair[0].to == pair[1].from && alternates) {
-            return disagree(Wrong::Chain, format!("{pair:?}"));
-        }
+impl Engine<'_> {
+    /// Where anything happens, in order.
+    fn ends(&self) -> Vec<f64> {
+        let chords = self.objects.iter().chain(self.regions);
+        let mut ends: Vec<f64> = chords.flat_map(|c| [c.enter.t, c.exit.t]).collect();
+        ends.extend(self.hits.iter().map(|hit| hit.t));
+        ends.retain(|t| t.is_finite());
+        ends.sort_by(f64::total_cmp);
+        ends.dedup();
+        ends
     }
-    if subject.is_single {
-        let of_object = |hit: &&Hit| hit.entering != (hit.to.object().is_some());
-        if let Some(hit) = hits.iter().find(of_object) {
-            return disagree(Wrong::Chain, format!("{hit:?}"));
-        }
+
+    /// Whether an object holds the point at `t`, which is not where anything happens.
+    fn holds(&self, object: u32, t: f64) -> bool {
+        let own = |c: &&Chord| c.object.0 == object && c.enter.t < t && t < c.exit.t;
+        self.objects.iter().any(|c| own(&c))
     }
-    if let (true, Some(first), Some(last)) = (subject.is_bounded, hits.first(), hits.last())
-        && (first.from.object().is_some() || last.to.object().is_some())
-    {
-        return disagree(Wrong::Line, format!("{first:?}\n{last:?}"));
+
+    /// The region of the point at `t`, once from the chords and, where there are any, once from
+    /// the crossings.
+    fn region(&self, t: f64) -> (Option<u32>, Option<Option<u32>>) {
+        let there = |c: &&Chord| c.enter.t < t && t < c.exit.t;
+        let chord = self.regions.iter().find(there).map(|c| c.object.0);
+        let id = |region: Region| region.object().map(|object| object.0);
+        let passed = self.hits.partition_point(|hit| hit.t < t);
+        let crossing = match passed.checked_sub(1) {
+            Some(last) => Some(id(self.hits[last].to)),
+            None => self.hits.first().map(|first| id(first.from)),
+        };
+        (chord, crossing)
     }
-    Ok(())
+}
+
+fn same<T: std::fmt::Debug + PartialEq>([octree, brute]: [T; 2]) -> Result<T, Disagreement> {
+    if octree == brute {
+        return Ok(octree);
+    }
+    Err(Disagreement {
+        wrong: Wrong::Accelerator,
+        details: format!("octree {octree:#?}\nbrute {brute:#?}"),
+    })
+}
+
+/// Each crossing begins in the region where the last one ended.
+fn check_chain(hits: &[Hit]) -> Result<(), Disagreement> {
+    let broken = |pair: &&[Hit]| !(pair[0].t <= pair[1].t && pair[0].to == pair[1].from);
+    match hits.windows(2).find(broken) {
+        Some(pair) => disagree(Wrong::Chain, format!("{pair:#?}")),
+        None => Ok(()),
+    }
 }
 
 fn check_half_line(subject: &Subject, ray: Ray, whole: &[Hit]) -> Result<(), Disagreement> {
-    let [half, brute] = subject.crossings(ray, false);
-    if half != brute {
-        return disagree(Wrong::Accelerator, format!("octree {half:?}\nbrute {brute:?}"));
-    }
+    let half = same(subject.crossings(ray, false))?;
     let ahead = whole.partition_point(|hit| hit.t <= 0.0);
     if half != whole[ahead..] {
-        return disagree(Wrong::Line, format!("ahead {half:?}\nof {whole:?}"));
+        return disagree(Wrong::Line, format!("ahead {half:#?}\nof {whole:#?}"));
     }
-    let closest = subject.closest(ray);
+    let closest = same(subject.closest(ray))?;
     if closest != half.first().copied().unwrap_or(Hit::MISS) {
-        return disagree(Wrong::Line, format!("closest {closest:?}\nof {half:?}"));
+        return disagree(Wrong::Line, format!("closest {closest:?}\nof {half:#?}"));
     }
     Ok(())
 }
 
-/// Points to look at: in the middle between all places where anything may happen, and close to
-/// every crossing.
-fn samples(sight: &Sight<'_>, hits: &[Hit]) -> Vec<f64> {
+/// The chords of an object have length and lie apart; those of a bounded one end.
+fn check_chords(subject: &Subject, chords: &[Chord]) -> Result<(), Disagreement> {
+    for (index, chord) in chords.iter().enumerate() {
+        let (start, end) = (chord.enter.t, chord.exit.t);
+        let next = chords[index + 1..].iter().find(|c| c.object == chord.object);
+        let apart = next.is_none_or(|next| next.enter.t > end);
+        let ends = start.is_finite() && end.is_finite();
+        let bounded = subject.is_bounded[chord.object.0 as usize];
+        if !(start < end && apart && (ends || !bounded)) {
+            return disagree(Wrong::Chain, format!("{chord:#?}\nthen {next:#?}"));
+        }
+    }
+    Ok(())
+}
+
+/// Points to look at: between all places where anything may happen, and close to where the engine
+/// says that something does.
+fn points(sight: &Sight<'_>, ends: &[f64]) -> Vec<f64> {
     let reach = sight.parameter(sight.radius());
     let (start, end) = (sight.shift() - reach, sight.shift() + reach);
     let mut knots = sight.proposals();
-    knots.extend(hits.iter().map(|hit| hit.t));
+    knots.extend(ends);
     knots.extend([start, end]);
     knots.sort_by(f64::total_cmp);
     let mut points = vec![start - reach, end + reach];
     for pair in knots.windows(2) {
         let gap = pair[1] - pair[0];
-        points.extend([0.5, 0.25, 0.9].map(|part| pair[0] + gap * part));
-    }
-    for hit in hits {
-        let near = sight.parameter(sight.uncertainty(hit.t));
-        for multiple in [2.0, 16.0, 1024.0] {
-            points.extend([hit.t - multiple * near, hit.t + multiple * near]);
+        // Two names of one place are no interval.
+        if gap > 4.0 * sight.parameter(sight.uncertainty(pair[0])) {
+            points.extend([0.5, 0.25, 0.9].map(|part| pair[0] + gap * part));
         }
     }
-    points.retain(|t| t.is_finite());
+    for &t in ends {
+        let near = sight.parameter(sight.uncertainty(t));
+        for multiple in [4.0, 64.0, 4096.0] {
+            points.extend([t - multiple * near, t + multiple * near]);
+        }
+    }
+    points.retain(|t| t.is_finite() && !ends.contains(t));
     points.sort_by(f64::total_cmp);
     points
 }
 
-fn check_regions(
-    subject: &Subject,
+fn check_points(
     sight: &Sight<'_>,
-    hits: &[Hit],
+    engine: &Engine<'_>,
     tally: &mut Tally,
 ) -> Result<(), Disagreement> {
-    // Without crossings, a line that is all inside is not told from one that is all outside.
-    let mut everywhere = subject.is_bounded.then_some(None);
-    let mut seen = vec![false; hits.len() + 1];
-    for t in samples(sight, hits) {
-        let piece = hits.partition_point(|hit| hit.t < t);
-        // At the parameter of a crossing one is on both sides of it.
-        if hits.get(piece).is_some_and(|hit| hit.t == t) {
-            continue;
-        }
-        let Place::In(found) = sight.place(t) else {
-            tally.undecidable += 1;
-            continue;
-        };
+    let ends = engine.ends();
+    let mut seen = vec![false; ends.len() + 1];
+    let mut answers = Vec::new();
+    for t in points(sight, &ends) {
+        sight.answers(t, &mut answers);
+        let place = sight.oracle.place(&answers);
         tally.samples += 1;
-        seen[piece] = true;
-        let expected = match (piece.checked_sub(1), hits.first()) {
-            (Some(before), _) => object(hits[before].to),
-            (None, Some(first)) => object(first.from),
-            (None, None) => *everywhere.get_or_insert(found),
-        };
-        if found != expected {
-            let exact = subject.oracle.exact_place(sight.ray(), t);
-            assert!(
-                exact == Place::In(found),
-                "the oracle contradicts itself at {t:?}: {found:?}, exactly {exact:?}"
-            );
-            let p = sight.ray().at(t);
-            let off = sight.uncertainty(t);
-            return disagree(
-                Wrong::Region,
-                format!("t = {t:?}, point {p}, uncertainty {off:e}: the engine is in {expected:?}, the oracle in {found:?}\n{hits:#?}"),
-            );
+        tally.undecidable += u64::from(place == Place::Near);
+        seen[ends.partition_point(|end| *end < t)] |= place != Place::Near;
+        for (object, answer) in sight.oracle.objects().zip(&answers) {
+            let found = engine.holds(object, t);
+            if answer.is_some_and(|expected| expected != found) {
+                return contradiction(sight, engine, t, &answers, format!("object {object}"));
+            }
+        }
+        let (chord, crossing) = engine.region(t);
+        let differs = |found: Option<u32>| place != Place::Near && place != Place::In(found);
+        if differs(chord) || crossing.is_some_and(differs) {
+            return contradiction(sight, engine, t, &answers, format!("region {place:?}"));
         }
     }
     tally.pieces += seen.len() as u64;
     tally.blind += seen.iter().filter(|seen| !**seen).count() as u64;
     Ok(())
+}
+
+/// A disagreement at a point, after the exact definitions have confirmed the oracle.
+fn contradiction(
+    sight: &Sight<'_>,
+    engine: &Engine<'_>,
+    t: f64,
+    answers: &[Answer],
+    what: String,
+) -> Result<(), Disagreement> {
+    let exact = sight.oracle.exact_answers(sight.ray(), t);
+    let confirmed = |(answer, exact): (&Answer, &Answer)| answer.is_none() || answer == exact;
+    assert!(
+        answers.iter().zip(&exact).all(confirmed),
+        "the oracle contradicts itself at {t:?}: {answers:?}, exactly {exact:?}"
+    );
+    let (point, off) = (sight.ray().at(t), sight.uncertainty(t));
+    let chords = engine.objects.iter().map(|c| (c.object.0, c.enter.t, c.exit.t));
+    let chords: Vec<_> = chords.collect();
+    disagree(
+        Wrong::Region,
+        format!(
+            "{what} at t = {t:?}, point {point}, uncertainty {off:e}: held by {answers:?}, \
+             region {:?}, chords {chords:?}",
+            engine.region(t),
+        ),
+    )
 }
 
 /// Boundaries that coincide leave no sliver between them: where two crossings are far closer than

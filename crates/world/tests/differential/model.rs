@@ -5,7 +5,7 @@ use std::sync::Arc;
 use octray_geometry::Solid;
 use octray_math::Ray;
 use octray_scene::{Material, Object, Scene, SceneBuilder};
-use octray_world::{Accel, Counters, Criteria, Hit, RayQuery, World, WorldConfig};
+use octray_world::{Accel, Chord, Counters, Criteria, Hit, Overlaps, RayQuery, World, WorldConfig};
 
 use crate::oracle::Oracle;
 
@@ -37,8 +37,8 @@ pub(crate) struct Case {
 pub(crate) struct Subject {
     pub(crate) oracle: Oracle,
     pub(crate) is_delicate: bool,
-    pub(crate) is_single: bool,
-    pub(crate) is_bounded: bool,
+    /// For each object.
+    pub(crate) is_bounded: Vec<bool>,
     octree: World,
     brute: World,
 }
@@ -66,15 +66,14 @@ impl Model {
         };
         let (octree, brute) = (world(Accel::Auto)?, world(Accel::Brute)?);
         let merged = brute.stats().merged_surfaces > 0;
-        let bounds = |part: &Part| part.solid.bounds();
+        let is_bounded = |part: &Part| {
+            let bounds = part.solid.bounds();
+            bounds.is_bounded() || bounds.is_empty()
+        };
         Some(Subject {
             oracle: Oracle::new(&scene, merged),
             is_delicate: self.delicate,
-            is_single: self.parts.len() == 1,
-            is_bounded: self.parts.iter().all(|part| {
-                let bounds = bounds(part);
-                bounds.is_bounded() || bounds.is_empty()
-            }),
+            is_bounded: self.parts.iter().map(is_bounded).collect(),
             octree,
             brute,
         })
@@ -103,12 +102,23 @@ impl Subject {
         })
     }
 
-    /// The first boundary on a ray, from the octree.
-    pub(crate) fn closest(&self, ray: Ray) -> Hit {
-        let mut hits = Vec::new();
-        let query = RayQuery::new(ray);
-        self.octree
-            .closest(&[query], &mut hits, &mut Counters::default());
-        hits[0]
+    /// All chords of a line, from the octree and by brute force.
+    pub(crate) fn chords(&self, ray: Ray, overlaps: Overlaps) -> [Vec<Chord>; 2] {
+        [&self.octree, &self.brute].map(|world| {
+            let mut chords = Vec::new();
+            let query = RayQuery::new(ray);
+            world.chords(&query, true, overlaps, &mut chords, &mut Counters::default());
+            chords
+        })
+    }
+
+    /// The first boundary on a ray, from the octree and by brute force.
+    pub(crate) fn closest(&self, ray: Ray) -> [Hit; 2] {
+        [&self.octree, &self.brute].map(|world| {
+            let mut hits = Vec::new();
+            let query = RayQuery::new(ray);
+            world.closest(&[query], &mut hits, &mut Counters::default());
+            hits[0]
+        })
     }
 }

@@ -14,8 +14,8 @@ mod sight;
 
 use std::cmp::Ordering;
 
-use octray_geometry::surface::SURFACE_TOLERANCE;
-use octray_geometry::{Primitive, Solid, SolidNode};
+use octray_geometry::surface::{PLACE_TOLERANCE, SURFACE_TOLERANCE};
+use octray_geometry::{Primitive, SceneFrame, Solid, SolidNode};
 use octray_math::{Aabb, DAffine3, DVec3, Ray};
 use octray_scene::{Scene, Shape};
 
@@ -26,7 +26,7 @@ use frame::Frame;
 pub(crate) use sight::Sight;
 
 /// What is known of a yes-or-no question: `None` where rounding may decide it.
-type Answer = Option<bool>;
+pub(crate) type Answer = Option<bool>;
 
 /// A primitive where it stands.
 #[derive(Debug)]
@@ -71,33 +71,27 @@ pub(crate) struct Oracle {
     /// A ball around all that is bounded in the primitives.
     center: DVec3,
     radius: f64,
-    /// The largest coordinate of a bounded object: the unit of the surface table's tolerance.
-    scene_size: f64,
+    /// The coordinates in which the tolerance is stated.
+    scene: SceneFrame,
     /// How far the surface table may have moved boundaries, in units of the scene's size.
     tolerance: f64,
 }
 
 /// Two merged planes may differ by the tolerance in their distance from the origin and in each
-/// component of their normals: four times that at a corner of the scene. Other surfaces get the
-/// same.
-const MERGED: f64 = 8.0 * SURFACE_TOLERANCE;
+/// component of their normals: four times that at a corner of the scene. Other surfaces get twice
+/// as much.
+const MERGED: f64 = 8.0;
 
 impl Oracle {
     /// For the solids of a scene. `merged`: whether the surface table has made any surfaces one.
     pub(crate) fn new(scene: &Scene, merged: bool) -> Self {
         let mut leaves = Vec::new();
         let mut owners = Vec::new();
-        let mut scene_size = 0.0_f64;
         for (index, object) in scene.objects().iter().enumerate() {
             let Shape::Solid(solid) = &object.shape else {
                 panic!("only solids have an inside");
             };
             let bounds = object.shape.bounds();
-            let bounded = bounds.is_bounded() && !bounds.is_empty();
-            if bounded {
-                let size = bounds.min.abs().max(bounds.max.abs()).max_element();
-                scene_size = scene_size.max(size);
-            }
             owners.push(Owner {
                 object: index as u32,
                 root: plant(solid, &mut Vec::new(), &mut leaves),
@@ -126,19 +120,25 @@ impl Oracle {
         } else {
             (all.center(), all.diagonal())
         };
+        let frame = SceneFrame::new(&scene.bounds());
         Self {
             leaves,
             owners,
             center,
             radius: radius.max(f64::MIN_POSITIVE),
-            scene_size: if scene_size > 0.0 { scene_size } else { 1.0 },
-            tolerance: if merged { MERGED } else { 0.0 },
+            tolerance: if merged {
+                let place = PLACE_TOLERANCE * (frame.largest() / frame.size);
+                MERGED * (SURFACE_TOLERANCE + place)
+            } else {
+                0.0
+            },
+            scene: frame,
         }
     }
 
     /// The unit of the surface table's tolerance.
     pub(crate) fn scene_size(&self) -> f64 {
-        self.scene_size
+        self.scene.size
     }
 
     /// The primitives, each with where it is, rounded.
@@ -155,9 +155,21 @@ impl Oracle {
         self.radius
     }
 
-    fn place(&self, is_inside: &mut impl FnMut(usize) -> Answer) -> Place {
-        for owner in &self.owners {
-            match evaluate(&owner.root, is_inside) {
+    /// Whether each object holds a point, by rank.
+    fn answers(&self, answers: &mut Vec<Answer>, is_inside: &mut impl FnMut(usize) -> Answer) {
+        answers.clear();
+        answers.extend(self.owners.iter().map(|o| evaluate(&o.root, is_inside)));
+    }
+
+    /// The objects by rank.
+    pub(crate) fn objects(&self) -> impl Iterator<Item = u32> {
+        self.owners.iter().map(|owner| owner.object)
+    }
+
+    /// The region of a point, given which objects hold it.
+    pub(crate) fn place(&self, answers: &[Answer]) -> Place {
+        for (owner, answer) in self.owners.iter().zip(answers) {
+            match answer {
                 Some(true) => return Place::In(Some(owner.object)),
                 Some(false) => {}
                 None => return Place::Near,
@@ -166,10 +178,12 @@ impl Oracle {
         Place::In(None)
     }
 
-    /// The region without any rounding or margin; near means on a boundary.
-    pub(crate) fn exact_place(&self, ray: &Ray, t: f64) -> Place {
+    /// Whether each object holds a point, by rank, without any rounding or margin; not known means
+    /// on a boundary.
+    pub(crate) fn exact_answers(&self, ray: &Ray, t: f64) -> Vec<Answer> {
         let point = exact::point_at(ray, t);
-        self.place(&mut |index| {
+        let mut answers = Vec::new();
+        self.answers(&mut answers, &mut |index| {
             let leaf = &self.leaves[index];
             let frame = ExactFrame::product(&leaf.chain);
             match exact::side(&leaf.primitive, &frame, &point) {
@@ -177,7 +191,8 @@ impl Oracle {
                 Ordering::Equal => None,
                 Ordering::Greater => Some(false),
             }
-        })
+        });
+        answers
     }
 }
 

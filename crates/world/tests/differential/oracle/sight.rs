@@ -4,7 +4,7 @@ use octray_math::{DVec3, Ray};
 
 use super::clearance::clearance;
 use super::number::{Number, Twofold};
-use super::{Answer, Oracle, Place};
+use super::{Answer, Oracle};
 
 /// Rounding errors of the engine are bounded by this many units in the last place of the lengths
 /// that are added: a dozen operations from the ray to a crossing, each wrong by half a unit, and
@@ -14,12 +14,10 @@ const ROUNDINGS: f64 = 16.0;
 /// A ray in front of an oracle.
 #[derive(Debug)]
 pub(crate) struct Sight<'a> {
-    pub(super) oracle: &'a Oracle,
+    pub(crate) oracle: &'a Oracle,
     ray: Ray,
     /// Where the ray passes the centre.
     pub(super) shift: f64,
-    /// How far the centre's closest point may be off.
-    reach: f64,
     pub(super) lines: Vec<LocalLine>,
 }
 
@@ -44,7 +42,6 @@ impl<'a> Sight<'a> {
             oracle,
             ray,
             shift,
-            reach: ray.origin.length() + shift.abs() * ray.direction.length(),
             lines: lines.collect(),
         }
     }
@@ -71,21 +68,28 @@ impl<'a> Sight<'a> {
         distance / self.ray.direction.length()
     }
 
-    /// The largest error that the engine may make in space near parameter `t`.
-    pub(crate) fn uncertainty(&self, t: f64) -> f64 {
-        let far = self.ray.at(t).length() + t.abs() * self.ray.direction.length() + self.reach;
-        let scene = self.oracle.scene_size.max(self.oracle.radius);
-        ROUNDINGS * f64::EPSILON * (far + scene)
-            + self.oracle.tolerance * self.oracle.scene_size.max(self.ray.at(t).length())
+    /// The lengths that are added on the way from the ray to a crossing at `t`.
+    fn far(&self, t: f64) -> f64 {
+        let Ray { origin, direction } = self.ray;
+        let near = origin.length() + self.shift.abs() * direction.length();
+        near + self.ray.at(t).length() + t.abs() * direction.length() + self.oracle.radius
     }
 
-    /// The region at a parameter.
-    pub(crate) fn place(&self, t: f64) -> Place {
-        let far = self.ray.at(t).length() + t.abs() * self.ray.direction.length() + self.reach;
-        let uncertainty = self.uncertainty(t);
+    /// The largest error that the engine may make in space near parameter `t`, apart from what
+    /// transforms add.
+    pub(crate) fn uncertainty(&self, t: f64) -> f64 {
+        let scene = &self.oracle.scene;
+        let away = self.ray.at(t).distance(scene.origin).max(scene.size);
+        ROUNDINGS * f64::EPSILON * self.far(t) + self.oracle.tolerance * away
+    }
+
+    /// Whether each object holds the point at `t`, by rank.
+    pub(crate) fn answers(&self, t: f64, answers: &mut Vec<Answer>) {
+        let (far, uncertainty) = (self.far(t), self.uncertainty(t));
         let u = t - self.shift;
-        self.oracle
-            .place(&mut |index| self.is_inside(index, t, u, far, uncertainty))
+        self.oracle.answers(answers, &mut |index| {
+            self.is_inside(index, t, u, far, uncertainty)
+        });
     }
 
     fn is_inside(&self, index: usize, t: f64, u: f64, far: f64, uncertainty: f64) -> Answer {
