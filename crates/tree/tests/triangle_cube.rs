@@ -6,7 +6,7 @@
     reason = "how many cases each step decides is worth seeing"
 )]
 
-use num_rational::BigRational;
+use num_bigint::BigInt;
 use octray_math::{Aabb, DVec3, hash_combine};
 use octray_tree::triangle_cube::{Step, triangle_meets_cube};
 
@@ -18,24 +18,35 @@ fn cases() -> u64 {
     4_000 * times.unwrap_or(1)
 }
 
-type Point = [BigRational; 3];
+/// Homogeneous coordinates x, y, z, w in integers, `w > 0`: a rational point.
+type Point = [BigInt; 4];
 
-fn exact(x: f64) -> BigRational {
-    BigRational::from_float(x).expect("finite")
+/// The number times 2^1074: an integer for every `f64`.
+fn exact(x: f64) -> BigInt {
+    let bits = x.abs().to_bits();
+    let (exponent, fraction) = (bits >> 52, bits & ((1 << 52) - 1));
+    let size = match exponent {
+        0 => BigInt::from(fraction),
+        e => BigInt::from(fraction | 1 << 52) << (e - 1),
+    };
+    if x < 0.0 { -size } else { size }
 }
 
 /// Whether anything is left of the triangle after clipping it by the six faces (Sutherland and
 /// Hodgman 1974), in rational numbers.
 fn clipping(triangle: &[DVec3; 3], cube: &Aabb) -> bool {
-    let mut polygon: Vec<Point> = triangle.iter().map(|p| p.to_array().map(exact)).collect();
+    let zero = BigInt::from(0);
+    let mut polygon: Vec<Point> = triangle
+        .iter()
+        .map(|p| [exact(p.x), exact(p.y), exact(p.z), BigInt::from(1)])
+        .collect();
     for axis in 0..3 {
         for (bound, keep_below) in [(cube.max[axis], true), (cube.min[axis], false)] {
             let bound = exact(bound);
             let height = |p: &Point| {
-                let above = p[axis].clone() - &bound;
+                let above = &p[axis] - &bound * &p[3];
                 if keep_below { above } else { -above }
             };
-            let zero = exact(0.0);
             let mut kept = Vec::new();
             for (i, p) in polygon.iter().enumerate() {
                 let q = &polygon[(i + 1) % polygon.len()];
@@ -44,10 +55,8 @@ fn clipping(triangle: &[DVec3; 3], cube: &Aabb) -> bool {
                     kept.push(p.clone());
                 }
                 if (hp < zero && hq > zero) || (hp > zero && hq < zero) {
-                    let t = hp.clone() / (hp - hq);
-                    kept.push(std::array::from_fn(|i| {
-                        p[i].clone() + (q[i].clone() - &p[i]) * &t
-                    }));
+                    let sign = if hp < zero { 1 } else { -1 };
+                    kept.push(std::array::from_fn(|i| (&q[i] * -&hp + &p[i] * &hq) * sign));
                 }
             }
             polygon = kept;
