@@ -5,6 +5,7 @@ use std::sync::Arc;
 use octray_math::{DAffine3, DVec3};
 
 use super::lower::{FIRST_MESH, Lowering, MeshOperand};
+use crate::mesh::FacetPlanes;
 use crate::surface::{Canonical, Surface, points_upward};
 use crate::{Primitive, SurfaceId};
 
@@ -62,6 +63,7 @@ impl Lowering {
             Primitive::Mesh(mesh) => {
                 let surface = SurfaceId(FIRST_MESH - self.meshes.len() as u32);
                 self.meshes.push(MeshOperand {
+                    planes: FacetPlanes::default(),
                     mesh: Arc::clone(mesh),
                     scene_from_mesh: *scene,
                 });
