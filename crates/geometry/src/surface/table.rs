@@ -203,6 +203,27 @@ mod tests {
 
     proptest! {
         #[test]
+        fn any_two_frusta_of_one_cone_share_it(
+            radius in -3.0..3.0f64, growth in -2.0..2.0f64, heights in [-3.0..3.0f64, -3.0..3.0],
+            turned in any::<bool>(),
+        ) {
+            prop_assume!(growth.abs() > 0.01);
+            let tilt = DAffine3::from_rotation_x(if turned { 0.7 } else { 0.0 });
+            let mut table = SurfaceTable::new(5.0, 5.0);
+            let mut frustum = |base: f64| {
+                let own = radius + growth * base;
+                let frame = DAffine3::from_translation(DVec3::new(0.0, 0.0, base))
+                    * DAffine3::from_scale(DVec3::new(own, own, 1.0));
+                table.insert(Surface::Curved {
+                    canonical: Canonical::Cone { slope: growth / own },
+                    local_from_scene: (tilt * frame).inverse(),
+                })
+            };
+            prop_assume!(heights.iter().all(|h| (radius + growth * h).abs() > 0.05));
+            prop_assert_eq!(frustum(heights[0]), frustum(heights[1]));
+        }
+
+        #[test]
         fn a_surface_inserted_again_is_the_same_whatever_came_between(
             steps in proptest::collection::vec(-8i32..8, 1..40), at in -1.0..1.0f64,
         ) {
