@@ -68,8 +68,9 @@ fn curved(
             let radius = 1.0 + slope * height;
             let growth = slope / along.dot(axis);
             let section = |size: f64| ellipse(axes.x_axis, axes.y_axis, size);
-            // Both nappes belong to it: radius and growth are given up to a common sign.
-            let size = radius + std::f64::consts::SQRT_2 * growth * axes.x_axis.length();
+            // Both nappes belong to it: radius and growth are given up to a common sign, that of
+            // the radius at a fixed height. (Both are in units of the frame's own radius here.)
+            let size = radius + std::f64::consts::SQRT_2 * growth;
             let sign = 1.0_f64.copysign(size);
             put(&(center + along * height).to_array());
             put(&section(sign * radius));
