@@ -47,11 +47,6 @@ impl Report {
         self
     }
 
-    /// The share of points that cannot be compared.
-    pub(crate) fn undecidable(&self) -> f64 {
-        share(&self.tally)
-    }
-
     /// The figures, one line for all and one for each family of rays.
     pub(crate) fn lines(&self) -> Vec<String> {
         let line = |name: &str, t: &Tally| {

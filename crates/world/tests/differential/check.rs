@@ -154,12 +154,12 @@ fn check_half_line(subject: &Subject, ray: Ray, whole: &[Hit]) -> Result<(), Dis
     Ok(())
 }
 
-/// The chords of an object have length and lie apart; those of a bounded one end.
+/// The chords of an object have length and do not overlap; those of a bounded one end.
 fn check_chords(subject: &Subject, chords: &[Chord]) -> Result<(), Disagreement> {
     for (index, chord) in chords.iter().enumerate() {
         let (start, end) = (chord.enter.t, chord.exit.t);
         let next = chords[index + 1..].iter().find(|c| c.object == chord.object);
-        let apart = next.is_none_or(|next| next.enter.t > end);
+        let apart = next.is_none_or(|next| next.enter.t >= end);
         let ends = start.is_finite() && end.is_finite();
         let bounded = subject.is_bounded[chord.object.0 as usize];
         if !(start < end && apart && (ends || !bounded)) {
@@ -188,7 +188,7 @@ fn points(sight: &Sight<'_>, ends: &[f64]) -> Vec<f64> {
     }
     for &t in ends {
         let near = sight.parameter(sight.uncertainty(t));
-        for multiple in [4.0, 64.0, 4096.0] {
+        for multiple in [16.0, 256.0, 4096.0] {
             points.extend([t - multiple * near, t + multiple * near]);
         }
     }
