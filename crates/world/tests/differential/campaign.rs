@@ -52,7 +52,12 @@ impl Report {
         let line = |name: &str, t: &Tally| {
             format!(
                 "{name}: {} rays, {} crossings, {} points, {:.3}% undecidable, {} of {} pieces blind",
-                t.rays, t.crossings, t.samples, 100.0 * share(t), t.blind, t.pieces,
+                t.rays,
+                t.crossings,
+                t.samples,
+                100.0 * share(t),
+                t.blind,
+                t.pieces,
             )
         };
         let all = line(&format!("{} scenes", self.scenes), &self.tally);

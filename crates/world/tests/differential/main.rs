@@ -54,9 +54,10 @@ fn random_scenes_agree_with_membership_by_definition() {
     }
     for found in &report.found {
         let small = shrink(&found.case, found.disagreement.wrong);
-        let again = small.model.prepare().and_then(|subject| {
-            check(&subject, small.ray, &mut Tally::default()).err()
-        });
+        let again = small
+            .model
+            .prepare()
+            .and_then(|subject| check(&subject, small.ray, &mut Tally::default()).err());
         let details = again.map_or_else(|| found.disagreement.details.clone(), |d| d.details);
         eprintln!(
             "scene {} ({:?}): {:?}\n{}\n{details}\n",
@@ -100,7 +101,10 @@ fn a_displaced_engine_is_noticed() {
             noticed += u32::from(found);
         }
     }
-    assert!(scenes > 80 && noticed * 100 >= scenes * 95, "{noticed} of {scenes}");
+    assert!(
+        scenes > 80 && noticed * 100 >= scenes * 95,
+        "{noticed} of {scenes}"
+    );
 }
 
 /// The quick answers of the oracle are those of the exact definitions, near boundaries too.
@@ -128,7 +132,10 @@ fn rounded_answers_are_exact_where_they_are_given() {
                 for (answer, exact) in answers.iter().zip(&exact) {
                     asked += 1;
                     given += u32::from(answer.is_some());
-                    assert!(answer.is_none() || answer == exact, "scene {index}, t = {t:?}");
+                    assert!(
+                        answer.is_none() || answer == exact,
+                        "scene {index}, t = {t:?}"
+                    );
                 }
             }
         }
@@ -138,7 +145,10 @@ fn rounded_answers_are_exact_where_they_are_given() {
 
 #[test]
 fn cases_found_before_agree() {
-    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/differential/regressions");
+    let folder = concat!(
+        env!("CARGO_MANIFEST_DIR"),
+        "/tests/differential/regressions"
+    );
     let mut files: Vec<_> = std::fs::read_dir(folder)
         .expect("the folder of cases")
         .map(|entry| entry.expect("readable").path())

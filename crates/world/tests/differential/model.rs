@@ -124,7 +124,13 @@ impl Subject {
         [&self.octree, &self.brute].map(|world| {
             let mut chords = Vec::new();
             let query = RayQuery::new(ray);
-            world.chords(&query, true, overlaps, &mut chords, &mut Counters::default());
+            world.chords(
+                &query,
+                true,
+                overlaps,
+                &mut chords,
+                &mut Counters::default(),
+            );
             chords
         })
     }

@@ -82,7 +82,10 @@ fn variants(term: &Term) -> Vec<Term> {
                 Some(Term::Word(head)) => head.as_str(),
                 _ => "",
             };
-            if matches!(head, "union" | "intersection" | "difference" | "complement" | "move") {
+            if matches!(
+                head,
+                "union" | "intersection" | "difference" | "complement" | "move"
+            ) {
                 let children = terms.iter().filter(|t| matches!(t, Term::List(_)));
                 all.extend(children.cloned());
             }
@@ -91,8 +94,10 @@ fn variants(term: &Term) -> Vec<Term> {
                 "case" => 2,
                 _ => usize::MAX,
             };
-            let droppable = |t: &Term| matches!(t, Term::List(inner) if inner[0] != Term::Word("ray".into()));
-            for index in (1..terms.len()).filter(|i| terms.len() > fewest && droppable(&terms[*i])) {
+            let droppable =
+                |t: &Term| matches!(t, Term::List(inner) if inner[0] != Term::Word("ray".into()));
+            for index in (1..terms.len()).filter(|i| terms.len() > fewest && droppable(&terms[*i]))
+            {
                 let mut fewer = terms.clone();
                 fewer.remove(index);
                 all.push(Term::List(fewer));
@@ -117,7 +122,12 @@ fn simpler_numbers(word: &str) -> Vec<String> {
     if !value.is_finite() || value == 0.0 {
         return Vec::new();
     }
-    let mut all = vec![0.0, value.signum(), value.round(), (value * 8.0).round() / 8.0];
+    let mut all = vec![
+        0.0,
+        value.signum(),
+        value.round(),
+        (value * 8.0).round() / 8.0,
+    ];
     let unit = libm::ldexp(1.0, libm::ilogb(value));
     for bits in [0, 3, 10, 20, 30, 40] {
         let step = libm::ldexp(unit, -bits);
@@ -127,5 +137,7 @@ fn simpler_numbers(word: &str) -> Vec<String> {
         all.extend(format!("{value:.digits$e}").parse::<f64>());
     }
     all.retain(|simple| *simple != value);
-    all.into_iter().map(|simple| format!("{simple:?}")).collect()
+    all.into_iter()
+        .map(|simple| format!("{simple:?}"))
+        .collect()
 }

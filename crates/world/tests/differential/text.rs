@@ -92,7 +92,13 @@ pub(crate) fn write_case(case: &Case) -> String {
     }
     out.push_str(" (ray");
     let ray = case.ray;
-    numbers(&mut out, ray.origin.to_array().into_iter().chain(ray.direction.to_array()));
+    numbers(
+        &mut out,
+        ray.origin
+            .to_array()
+            .into_iter()
+            .chain(ray.direction.to_array()),
+    );
     out.push_str("))");
     out
 }

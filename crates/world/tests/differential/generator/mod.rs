@@ -99,7 +99,11 @@ pub(crate) fn scene(draw: &mut Draw) -> Model {
             None => solid,
         };
         parts.push(Part {
-            priority: if draw.chance(0.3) { draw.whole(-1, 1) } else { 0 },
+            priority: if draw.chance(0.3) {
+                draw.whole(-1, 1)
+            } else {
+                0
+            },
             solid,
         });
     }
@@ -131,7 +135,11 @@ impl Tree<'_> {
         let arity = 2 + self.draw.below(operands.min(4) - 1);
         for last in (0..arity).rev() {
             let most = left - last;
-            let own = if last == 0 { most } else { 1 + self.draw.below(most) };
+            let own = if last == 0 {
+                most
+            } else {
+                1 + self.draw.below(most)
+            };
             left -= own;
             children.push(self.grow(own));
         }

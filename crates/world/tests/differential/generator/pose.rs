@@ -30,7 +30,10 @@ impl Pose {
             1 => factors.push(transform::rotation_degrees(DVec3::Z, 45.0)),
             2 => {
                 let axis = DVec3::new(1.0, 1.0, draw.pick(&[0.0, 1.0]));
-                factors.push(transform::rotation_degrees(axis, draw.pick(&[30.0, 45.0, 60.0, 120.0])));
+                factors.push(transform::rotation_degrees(
+                    axis,
+                    draw.pick(&[30.0, 45.0, 60.0, 120.0]),
+                ));
             }
             _ => factors.push(rotation(draw)),
         }
@@ -97,7 +100,10 @@ pub(super) fn placed(draw: &mut Draw, lattice: Lattice, pose: &Pose, solid: Soli
         2 => {
             // There and back again.
             let detour = rotation(draw) * DAffine3::from_translation(draw.direction());
-            moved(moved(solid, detour * local), pose.product() * detour.inverse())
+            moved(
+                moved(solid, detour * local),
+                pose.product() * detour.inverse(),
+            )
         }
         3 => {
             // A turn in three steps, a way in two.

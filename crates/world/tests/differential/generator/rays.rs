@@ -213,7 +213,11 @@ fn special_line(draw: &mut Draw, primitive: &Primitive) -> (DVec3, DVec3) {
         Primitive::Convex(polyhedron) => {
             let from = draw.pick(&polyhedron.vertices);
             let to = draw.pick(&polyhedron.vertices);
-            let direction = if from == to { draw.direction() } else { to - from };
+            let direction = if from == to {
+                draw.direction()
+            } else {
+                to - from
+            };
             (from, direction)
         }
         _ => (DVec3::ZERO, draw.direction()),

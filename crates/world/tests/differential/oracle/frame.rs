@@ -25,7 +25,11 @@ pub(crate) struct Frame {
 
 fn frobenius(m: &DMat3) -> f64 {
     let columns = [m.x_axis, m.y_axis, m.z_axis];
-    columns.iter().map(|c| c.length_squared()).sum::<f64>().sqrt()
+    columns
+        .iter()
+        .map(|c| c.length_squared())
+        .sum::<f64>()
+        .sqrt()
 }
 
 impl Frame {
@@ -55,7 +59,11 @@ impl Frame {
         let plain = |v: Row<Twofold>| DVec3::from_array(v.map(Number::rounded));
         let matrix = DMat3::from_cols(plain(x), plain(y), plain(z));
         let inverse = local_from_world.map(plain);
-        let shrink = inverse.iter().map(|r| r.length_squared()).sum::<f64>().sqrt();
+        let shrink = inverse
+            .iter()
+            .map(|r| r.length_squared())
+            .sum::<f64>()
+            .sqrt();
         Self {
             local_from_world,
             origin,

@@ -2,8 +2,8 @@
 //! sample, a missing one costs attention, and no answer depends on either.
 
 use super::clearance::clearance;
-use super::{Leaf, Sight};
 use super::sight::LocalLine;
+use super::{Leaf, Sight};
 
 /// The finest pieces a line is divided into, as halvings of the scene.
 const HALVINGS: u32 = 12;

@@ -101,8 +101,8 @@ impl<'a> Sight<'a> {
         let size = q.length() + leaf.extent;
         let chain = frame.shrink * (frame.stretch * size + frame.reach);
         let inverse = frame.condition * frame.shrink * far;
-        let margin = frame.shrink * uncertainty
-            + ROUNDINGS * f64::EPSILON * (chain + inverse + size);
+        let margin =
+            frame.shrink * uncertainty + ROUNDINGS * f64::EPSILON * (chain + inverse + size);
         let coarse = clearance(&leaf.primitive, q.to_array());
         if coarse.abs() > 2.0 * margin {
             return Some(coarse < 0.0);
@@ -118,7 +118,5 @@ impl<'a> Sight<'a> {
 /// The point of a ray at a parameter, to about 100 bits.
 fn point_at(ray: &Ray, t: f64) -> [Twofold; 3] {
     let (origin, direction) = (ray.origin.to_array(), ray.direction.to_array());
-    std::array::from_fn(|i| {
-        Twofold::of(origin[i]) + Twofold::of(direction[i]) * Twofold::of(t)
-    })
+    std::array::from_fn(|i| Twofold::of(origin[i]) + Twofold::of(direction[i]) * Twofold::of(t))
 }
