@@ -51,13 +51,14 @@ impl Report {
     pub(crate) fn lines(&self) -> Vec<String> {
         let line = |name: &str, t: &Tally| {
             format!(
-                "{name}: {} rays, {} crossings, {} points, {:.3}% undecidable, {} of {} pieces blind",
+                "{name}: {} rays, {} crossings, {} points, {:.3}% undecidable, {} pieces, {} in faces, {} blind",
                 t.rays,
                 t.crossings,
                 t.samples,
                 100.0 * share(t),
-                t.blind,
                 t.pieces,
+                t.in_faces,
+                t.blind,
             )
         };
         let all = line(&format!("{} scenes", self.scenes), &self.tally);

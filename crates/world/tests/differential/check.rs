@@ -20,6 +20,8 @@ pub(crate) struct Tally {
     pub(crate) pieces: u64,
     /// Of these, the ones in which no point could be compared.
     pub(crate) blind: u64,
+    /// Pieces in a face, compared by what lies on its two sides.
+    pub(crate) in_faces: u64,
 }
 
 impl Tally {
@@ -29,6 +31,7 @@ impl Tally {
         self.samples += other.samples;
         self.undecidable += other.undecidable;
         self.blind += other.blind;
+        self.in_faces += other.in_faces;
         self.pieces += other.pieces;
     }
 }
@@ -79,7 +82,7 @@ pub(crate) fn check(subject: &Subject, ray: Ray, tally: &mut Tally) -> Result<()
         objects: &objects,
         regions: &regions,
     };
-    check_points(&sight, &engine, tally)?;
+    check_points(subject, &sight, &engine, tally)?;
     check_skins(subject, &sight, &hits)
 }
 
@@ -207,6 +210,7 @@ fn points(sight: &Sight<'_>, ends: &[f64]) -> Vec<f64> {
 }
 
 fn check_points(
+    subject: &Subject,
     sight: &Sight<'_>,
     engine: &Engine<'_>,
     tally: &mut Tally,
@@ -223,18 +227,65 @@ fn check_points(
         for (object, answer) in sight.oracle.objects().zip(&answers) {
             let found = engine.holds(object, t);
             if answer.is_some_and(|expected| expected != found) {
-                return contradiction(sight, engine, t, &answers, format!("object {object}"));
+                return contradiction(sight, engine, t, &answers, &format!("object {object}"));
             }
         }
         let (chord, crossing) = engine.region(t);
         let differs = |found: Option<u32>| place != Place::Near && place != Place::In(found);
         if differs(chord) || crossing.is_some_and(differs) {
-            return contradiction(sight, engine, t, &answers, format!("region {place:?}"));
+            return contradiction(sight, engine, t, &answers, &format!("region {place:?}"));
         }
     }
     tally.pieces += seen.len() as u64;
-    tally.blind += seen.iter().filter(|seen| !**seen).count() as u64;
+    for (index, _) in seen.iter().enumerate().filter(|(_, seen)| !**seen) {
+        let (Some(&low), Some(&high)) = (
+            index.checked_sub(1).and_then(|i| ends.get(i)),
+            ends.get(index),
+        ) else {
+            tally.blind += 1;
+            continue;
+        };
+        if !subject.is_delicate && check_in_face(sight, engine, 0.5 * (low + high))? {
+            tally.in_faces += 1;
+        } else {
+            tally.blind += 1;
+        }
+    }
     Ok(())
+}
+
+/// Where a line runs in faces that coincide, and the same objects hold both sides of them, they
+/// hold the line too: there is no wall. Whether that could be compared.
+fn check_in_face(sight: &Sight<'_>, engine: &Engine<'_>, t: f64) -> Result<bool, Disagreement> {
+    let Some(normal) = sight.shared_normal(t) else {
+        return Ok(false);
+    };
+    let aside = normal * (1024.0 * sight.uncertainty(t));
+    let ray = sight.ray();
+    let [above, below] = [aside, -aside].map(|aside| {
+        let mut answers = Vec::new();
+        let beside = Ray::new(ray.origin + aside, ray.direction);
+        Sight::new(sight.oracle, beside).answers(t, &mut answers);
+        answers
+    });
+    let mut compared = false;
+    for (object, sides) in sight.oracle.objects().zip(above.iter().zip(&below)) {
+        let (Some(above), Some(below)) = sides else {
+            continue;
+        };
+        if above != below {
+            continue;
+        }
+        compared = true;
+        if engine.holds(object, t) != *above {
+            let what = format!("object {object} on both sides of a face");
+            disagree(
+                Wrong::Skin,
+                format!("{what} at t = {t:?}: held {above}, {:?}", engine.objects),
+            )?;
+        }
+    }
+    Ok(compared)
 }
 
 /// A disagreement at a point, after the exact definitions have confirmed the oracle.
@@ -243,7 +294,7 @@ fn contradiction(
     engine: &Engine<'_>,
     t: f64,
     answers: &[Answer],
-    what: String,
+    what: &str,
 ) -> Result<(), Disagreement> {
     let exact = sight.oracle.exact_answers(sight.ray(), t);
     let confirmed = |(answer, exact): (&Answer, &Answer)| answer.is_none() || answer == exact;
@@ -283,7 +334,7 @@ fn check_skins(subject: &Subject, sight: &Sight<'_>, hits: &[Hit]) -> Result<(),
         let along = ray.direction.normalize();
         let aside = along.any_orthonormal_vector();
         let across = along.cross(aside);
-        let step = subject.oracle.scene_size() * 2.0_f64.powi(-16);
+        let step = subject.oracle.scene_size() * 2.0_f64.powi(-19);
         let neighbours = (0..8).filter(|i| {
             let (sin, cos) = libm::sincos(f64::from(*i) * 0.8 + 0.1);
             let offset: DVec3 = (aside * cos + across * sin) * (step * (1.0 + f64::from(*i)));

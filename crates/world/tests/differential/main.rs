@@ -107,6 +107,29 @@ fn a_displaced_engine_is_noticed() {
     );
 }
 
+/// A wall of no thickness is noticed: two boxes that are apart by more than the tolerance of their
+/// own scene, but by far less than that of the oracle's, which has a large box in the distance.
+#[test]
+fn a_skin_is_noticed() {
+    let small = "(box 0 0 0 0.0625 0.0625 0.0625)";
+    let gap = 2.0_f64.powi(-40);
+    let beside = format!("(box {:?} 0 0 0.125 0.0625 0.0625)", 0.0625 + gap);
+    let large = "(box -1000 -1000 -1000 -900 -900 -900)";
+    let scene = |boxes: &str| {
+        read_case(&parse(&format!(
+            "(case (object 0 (union {boxes})) (ray -1 0.03 0.02 1 0 0))"
+        )))
+    };
+    let oracle = scene(&format!("{small} {beside} {large}"));
+    let engine = scene(&format!("{small} {beside}"));
+    let subject = oracle.model.prepare_as(&engine.model).expect("a scene");
+    let found = check(&subject, oracle.ray, &mut Tally::default());
+    assert!(found.is_err_and(|found| found.wrong == check::Wrong::Skin));
+    let right = oracle.model.prepare().expect("a scene");
+    let found = check(&right, oracle.ray, &mut Tally::default());
+    assert!(found.is_ok(), "{found:?}");
+}
+
 /// The quick answers of the oracle are those of the exact definitions, near boundaries too.
 #[test]
 fn rounded_answers_are_exact_where_they_are_given() {
