@@ -51,13 +51,14 @@ impl Report {
     pub(crate) fn lines(&self) -> Vec<String> {
         let line = |name: &str, t: &Tally| {
             format!(
-                "{name}: {} rays, {} crossings, {} points, {:.3}% undecidable, {} pieces, {} in faces, {} blind",
+                "{name}: {} rays, {} crossings, {} points ({:.2}% undecidable), {} pieces ({} in faces, {} short, {} blind)",
                 t.rays,
                 t.crossings,
                 t.samples,
                 100.0 * share(t),
                 t.pieces,
                 t.in_faces,
+                t.short,
                 t.blind,
             )
         };

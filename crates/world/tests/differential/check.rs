@@ -1,7 +1,7 @@
 //! The comparison of the engine with the oracle on one ray.
 
 use octray_geometry::surface::SURFACE_TOLERANCE;
-use octray_math::{DVec3, Ray};
+use octray_math::{DVec3, Ray, hash_u64, unit_f64};
 use octray_world::{Chord, Hit, Overlaps, Region};
 
 use crate::model::Subject;
@@ -18,10 +18,12 @@ pub(crate) struct Tally {
     pub(crate) undecidable: u64,
     /// Pieces of lines between crossings.
     pub(crate) pieces: u64,
-    /// Of these, the ones in which no point could be compared.
-    pub(crate) blind: u64,
-    /// Pieces in a face, compared by what lies on its two sides.
+    /// Of these, the ones in a face, compared by what lies on its two sides.
     pub(crate) in_faces: u64,
+    /// The ones no longer than what rounding may do to their ends.
+    pub(crate) short: u64,
+    /// The others in which no point could be compared: they run along boundaries.
+    pub(crate) blind: u64,
 }
 
 impl Tally {
@@ -32,6 +34,7 @@ impl Tally {
         self.undecidable += other.undecidable;
         self.blind += other.blind;
         self.in_faces += other.in_faces;
+        self.short += other.short;
         self.pieces += other.pieces;
     }
 }
@@ -116,7 +119,6 @@ impl Engine<'_> {
     fn region(&self, t: f64) -> (Option<u32>, Option<Option<u32>>) {
         let there = |c: &&Chord| c.enter.t < t && t < c.exit.t;
         let chord = self.regions.iter().find(there).map(|c| c.object.0);
-        let id = |region: Region| region.object().map(|object| object.0);
         let passed = self.hits.partition_point(|hit| hit.t < t);
         let crossing = match passed.checked_sub(1) {
             Some(last) => Some(id(self.hits[last].to)),
@@ -124,6 +126,10 @@ impl Engine<'_> {
         };
         (chord, crossing)
     }
+}
+
+fn id(region: Region) -> Option<u32> {
+    region.object().map(|object| object.0)
 }
 
 fn same<T: std::fmt::Debug + PartialEq>([octree, brute]: [T; 2]) -> Result<T, Disagreement> {
@@ -156,6 +162,9 @@ fn check_half_line(subject: &Subject, ray: Ray, whole: &[Hit]) -> Result<(), Dis
     });
     if !is_tail {
         return disagree(Wrong::Line, format!("ahead {half:#?}\nof {whole:#?}"));
+    }
+    if same(subject.occluded(ray))? == half.is_empty() {
+        return disagree(Wrong::Line, format!("occluded differs from {half:#?}"));
     }
     let closest = same(subject.closest(ray))?;
     if closest != half.first().copied().unwrap_or(Hit::MISS) {
@@ -236,17 +245,19 @@ fn check_points(
             return contradiction(sight, engine, t, &answers, &format!("region {place:?}"));
         }
     }
+    check_region(subject, sight, &mut answers)?;
     tally.pieces += seen.len() as u64;
     for (index, _) in seen.iter().enumerate().filter(|(_, seen)| !**seen) {
-        let (Some(&low), Some(&high)) = (
-            index.checked_sub(1).and_then(|i| ends.get(i)),
-            ends.get(index),
-        ) else {
+        let low = index.checked_sub(1).map(|i| ends[i]);
+        let (Some(low), Some(&high)) = (low, ends.get(index)) else {
             tally.blind += 1;
             continue;
         };
-        if !subject.is_delicate && check_in_face(sight, engine, 0.5 * (low + high))? {
+        let middle = 0.5 * (low + high);
+        if !subject.is_delicate && check_in_face(sight, engine, middle)? {
             tally.in_faces += 1;
+        } else if high - low <= 32.0 * sight.parameter(sight.uncertainty(middle)) {
+            tally.short += 1;
         } else {
             tally.blind += 1;
         }
@@ -254,13 +265,35 @@ fn check_points(
     Ok(())
 }
 
+/// The region of a point by itself, somewhere on the line.
+fn check_region(
+    subject: &Subject,
+    sight: &Sight<'_>,
+    answers: &mut Vec<Answer>,
+) -> Result<(), Disagreement> {
+    let turn = hash_u64(sight.shift().to_bits());
+    let away = 0.5 * sight.parameter(sight.radius()) * (2.0 * unit_f64(turn) - 1.0);
+    let point = sight.ray().at(sight.shift() + away);
+    let region = id(same(subject.region(point))?);
+    Sight::new(sight.oracle, Ray::new(point, DVec3::X)).answers(0.0, answers);
+    let place = sight.oracle.place(answers);
+    if place != Place::Near && place != Place::In(region) {
+        return disagree(
+            Wrong::Region,
+            format!("point {point:?} by itself: {region:?}, but {place:?}"),
+        );
+    }
+    Ok(())
+}
+
 /// Where a line runs in faces that coincide, and the same objects hold both sides of them, they
 /// hold the line too: there is no wall. Whether that could be compared.
 fn check_in_face(sight: &Sight<'_>, engine: &Engine<'_>, t: f64) -> Result<bool, Disagreement> {
-    let Some(normal) = sight.shared_normal(t) else {
+    let distance = 1024.0 * sight.uncertainty(t);
+    let Some(normal) = sight.shared_normal(t, 4.0 * distance) else {
         return Ok(false);
     };
-    let aside = normal * (1024.0 * sight.uncertainty(t));
+    let aside = normal * distance;
     let ray = sight.ray();
     let [above, below] = [aside, -aside].map(|aside| {
         let mut answers = Vec::new();

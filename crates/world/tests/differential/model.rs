@@ -5,7 +5,9 @@ use std::sync::Arc;
 use octray_geometry::Solid;
 use octray_math::{DVec3, Ray};
 use octray_scene::{Material, Object, Scene, SceneBuilder};
-use octray_world::{Accel, Chord, Counters, Criteria, Hit, Overlaps, RayQuery, World, WorldConfig};
+use octray_world::{
+    Accel, Chord, Counters, Criteria, Hit, Overlaps, RayQuery, Region, World, WorldConfig,
+};
 
 use crate::oracle::Oracle;
 
@@ -132,6 +134,25 @@ impl Subject {
                 &mut Counters::default(),
             );
             chords
+        })
+    }
+
+    /// The region of a point, from the octree and by brute force.
+    pub(crate) fn region(&self, point: DVec3) -> [Region; 2] {
+        [&self.octree, &self.brute].map(|world| {
+            let mut regions = Vec::new();
+            world.regions(&[point], &mut regions, &mut Counters::default());
+            regions[0]
+        })
+    }
+
+    /// Whether anything is on a ray, from the octree and by brute force.
+    pub(crate) fn occluded(&self, ray: Ray) -> [bool; 2] {
+        [&self.octree, &self.brute].map(|world| {
+            let mut blocked = Vec::new();
+            let query = RayQuery::new(ray);
+            world.occluded(&[query], &mut blocked, &mut Counters::default());
+            blocked[0]
         })
     }
 

@@ -9,7 +9,7 @@ use super::{Answer, Leaf, Oracle};
 /// Rounding errors of the engine are bounded by this many units in the last place of the lengths
 /// that are added: a dozen operations from the ray to a crossing, each wrong by half a unit, and
 /// norms that are bounded by sums.
-const ROUNDINGS: f64 = 16.0;
+const ROUNDINGS: f64 = 4.0;
 
 /// A ray in front of an oracle.
 #[derive(Debug)]
@@ -121,21 +121,26 @@ impl<'a> Sight<'a> {
     }
 
     /// The normal of the flat faces that are too near to tell their sides at `t`, if there are any,
-    /// all lie in one plane and no curved one is as near.
-    pub(crate) fn shared_normal(&self, t: f64) -> Option<DVec3> {
+    /// all lie in one plane, and nothing else is nearer than `room`.
+    pub(crate) fn shared_normal(&self, t: f64, room: f64) -> Option<DVec3> {
         let (far, uncertainty) = (self.far(t), self.uncertainty(t));
         let mut shared: Option<DVec3> = None;
         for (leaf, line) in self.oracle.leaves.iter().zip(&self.lines) {
             let q = line.origin + line.direction * (t - self.shift);
-            let near = 4.0 * self.margin(leaf, q, far, uncertainty);
+            let near = 2.0 * self.margin(leaf, q, far, uncertainty);
+            let clear = near.max(room * leaf.frame.shrink);
             let (flat, curved) = faces(&leaf.primitive, q);
-            if curved.is_some_and(|clearance| clearance.abs() <= near) {
+            if curved.is_some_and(|clearance| clearance.abs() <= clear) {
                 return None;
             }
-            for (normal, _) in flat.iter().filter(|(n, d)| (n.dot(q) - d).abs() <= near) {
-                let normal = leaf.frame.world_normal(*normal);
+            for (normal, offset) in flat {
+                let height = (normal.dot(q) - offset).abs();
+                if height > clear {
+                    continue;
+                }
+                let normal = leaf.frame.world_normal(normal);
                 let first = *shared.get_or_insert(normal);
-                if first.cross(normal).length() > 1e-9 {
+                if height > near || first.cross(normal).length() > 1e-9 {
                     return None;
                 }
             }
