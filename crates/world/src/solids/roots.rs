@@ -19,6 +19,16 @@ pub(super) struct Root {
     pub(super) triangle: u32,
 }
 
+impl Root {
+    /// There is one zero: parameters are compared by value and sorted by their bits.
+    fn new(s: f64, triangle: u32) -> Self {
+        Self {
+            s: s + 0.0,
+            triangle,
+        }
+    }
+}
+
 /// Where one surface's roots lie in the scratch.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Slot {
@@ -93,7 +103,7 @@ impl Solids {
                 Some(surface) => {
                     counters.surface_tests += 1;
                     let roots = &mut scratch.roots;
-                    surface.crossings(&line.ray, |s| roots.push(Root { s, triangle: 0 }))
+                    surface.crossings(&line.ray, |s| roots.push(Root::new(s, 0)))
                 }
                 None => {
                     let mesh = &self.meshes[index - self.surfaces.len()].solid;
@@ -102,10 +112,8 @@ impl Solids {
                     mesh.crossings(&line.ray, &mut scratch.mesh_roots, &mut cost);
                     counters.add_walk(&cost);
                     let found = scratch.mesh_roots.iter();
-                    scratch.roots.extend(found.map(|c| Root {
-                        s: c.t,
-                        triangle: c.triangle,
-                    }));
+                    let roots = found.map(|c| Root::new(c.t, c.triangle));
+                    scratch.roots.extend(roots);
                     false
                 }
             };
