@@ -58,7 +58,7 @@ pub enum SolidNode {
     Complement(Solid),
 }
 
-fn finite(what: &'static str, value: f64) -> Result<f64, ShapeError> {
+pub(crate) fn finite(what: &'static str, value: f64) -> Result<f64, ShapeError> {
     if value.is_finite() {
         Ok(value)
     } else {
@@ -192,7 +192,7 @@ impl Solid {
         flat
     }
 
-    fn primitive(primitive: Primitive) -> Self {
+    pub(crate) fn primitive(primitive: Primitive) -> Self {
         SolidNode::Primitive(primitive).into()
     }
 
