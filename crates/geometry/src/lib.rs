@@ -9,6 +9,7 @@ mod frame;
 mod identity;
 pub mod mesh;
 mod primitive;
+pub mod profile;
 mod sheet;
 mod solid;
 pub mod surface;

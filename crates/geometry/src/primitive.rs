@@ -38,6 +38,9 @@ pub enum ShapeError {
     /// The faces of a convex polyhedron enclose no bounded, full-dimensional region.
     #[error("the polyhedron is {0}")]
     BadPolyhedron(&'static str),
+    /// The outlines of a prism's or lathe's profile cannot be used.
+    #[error("the profile {0}")]
+    BadProfile(&'static str),
     /// The tree of operations is too deep.
     #[error("the solid has {0} nested operations; at most {max} are supported", max = crate::solid::MAX_NESTING)]
     TooDeep(u32),
