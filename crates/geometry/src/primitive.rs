@@ -5,6 +5,7 @@ use std::sync::Arc;
 use octray_math::{Aabb, DVec3};
 use thiserror::Error;
 
+use crate::composite::Composite;
 use crate::mesh::{MeshError, TriangleMesh};
 
 /// Why a shape cannot be made.
@@ -97,6 +98,8 @@ pub enum Primitive {
     },
     /// A bounded intersection of half-spaces.
     Convex(Arc<ConvexPolyhedron>),
+    /// A prism, a lathe or a concave polyhedron.
+    Composite(Arc<Composite>),
     /// The inside of a closed, consistently oriented mesh.
     Mesh(Arc<TriangleMesh>),
 }
@@ -179,6 +182,8 @@ impl Primitive {
             Self::Box { .. } => 6,
             Self::Cylinder { .. } | Self::Cone { .. } => 3,
             Self::Convex(polyhedron) => polyhedron.planes.len() as u64,
+            // Each may be named with both of its sides.
+            Self::Composite(composite) => 2 * composite.faces().len() as u64,
             // One more stands for the whole mesh in expressions.
             Self::Mesh(mesh) => mesh.triangles().len() as u64 + 1,
         }
@@ -204,6 +209,7 @@ impl Primitive {
             }
             Self::HalfSpace { .. } => Aabb::ALL,
             Self::Convex(polyhedron) => polyhedron.bounds(),
+            Self::Composite(composite) => composite.bounds(),
             Self::Mesh(mesh) => mesh.bounds(),
         }
     }

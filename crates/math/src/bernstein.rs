@@ -32,7 +32,10 @@ impl Bernstein {
     pub fn new(coefficients: &[f64]) -> Self {
         let mut all = [0.0; MAX_DEGREE + 1];
         let count = coefficients.len().clamp(1, MAX_DEGREE + 1);
-        for (to, from) in all.iter_mut().zip(&coefficients[..count.min(coefficients.len())]) {
+        for (to, from) in all
+            .iter_mut()
+            .zip(&coefficients[..count.min(coefficients.len())])
+        {
             *to = *from;
         }
         Self {
@@ -151,23 +154,25 @@ fn mix(a: f64, b: f64, u: f64) -> f64 {
     }
 }
 
-/// Where a function that is positive at exactly one of two points stops being so; a value of 0
-/// counts as not positive.
+/// Where a function that is positive at exactly one of two points changes between positive and not
+/// positive; 0 counts as not positive, so a zero at the end of a stretch of negative values is no
+/// change.
 #[must_use]
 pub fn change_of_sign(
-    f: impl FnMut(f64) -> f64,
+    mut f: impl FnMut(f64) -> f64,
     low: f64,
     high: f64,
     f_low: f64,
     f_high: f64,
 ) -> f64 {
-    if f_low == 0.0 {
-        low
-    } else if f_high == 0.0 {
-        high
-    } else {
-        roots::bracketed(f, low, high, f_low, f_high)
-    }
+    let below = |value: f64| {
+        if value == 0.0 {
+            -f64::MIN_POSITIVE
+        } else {
+            value
+        }
+    };
+    roots::bracketed(|u| below(f(u)), low, high, below(f_low), below(f_high))
 }
 
 #[cfg(test)]
@@ -183,6 +188,18 @@ mod tests {
         let mut count = 0;
         sixth.separate(&mut |_| count += 1);
         assert!(count < 1000, "{count}");
+    }
+
+    #[test]
+    fn a_zero_at_the_end_is_told_from_the_change_behind_it() {
+        // Zero at 0, negative, then positive from 2/3 on.
+        let p = Bernstein::new(&[0.0, -1.0, 1.0]);
+        let u = change_of_sign(|u| p.evaluate(u), 0.0, 1.0, 0.0, 1.0);
+        assert!((u - 2.0 / 3.0).abs() < 1e-15, "{u}");
+        // Positive from 0 on.
+        let q = Bernstein::new(&[0.0, 1.0, 1.0]);
+        let u = change_of_sign(|u| q.evaluate(u), 0.0, 1.0, 0.0, 1.0);
+        assert!(u < 1e-15, "{u}");
     }
 
     proptest! {

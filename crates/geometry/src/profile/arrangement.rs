@@ -70,10 +70,12 @@ impl Arrangement {
         let mut points = Vec::new();
         let mut known = BTreeMap::new();
         let mut index = |p: DVec2| {
-            *known.entry(p.to_array().map(f64::to_bits)).or_insert_with(|| {
-                points.push(p);
-                points.len() as u32 - 1
-            })
+            *known
+                .entry(p.to_array().map(f64::to_bits))
+                .or_insert_with(|| {
+                    points.push(p);
+                    points.len() as u32 - 1
+                })
         };
         let mut between: BTreeMap<usize, Vec<DVec2>> = BTreeMap::new();
         for (piece, p) in touches {
@@ -112,7 +114,10 @@ impl Arrangement {
 
 /// The points at which ends of some pieces touch the chords of others.
 fn touches(pieces: &[Piece]) -> Result<Vec<(usize, DVec2)>, Meeting> {
-    let hulls: Vec<Vec<DVec2>> = pieces.iter().map(|p| p.curve().control().collect()).collect();
+    let hulls: Vec<Vec<DVec2>> = pieces
+        .iter()
+        .map(|p| p.curve().control().collect())
+        .collect();
     let boxes: Vec<[DVec2; 2]> = pieces.iter().map(|p| p.curve().bounds()).collect();
     let mut order: Vec<usize> = (0..pieces.len()).collect();
     order.sort_by(|&i, &j| boxes[i][0].x.total_cmp(&boxes[j][0].x).then(i.cmp(&j)));
@@ -178,8 +183,11 @@ fn hulls_apart(a: &[DVec2], b: &[DVec2]) -> bool {
             (turns().any(|t| t > 0.0), turns().any(|t| t < 0.0))
         };
         let ((a_left, a_right), (b_left, b_right)) = (signs(a), signs(b));
-        from != to && !(a_left && b_left) && !(a_right && b_right)
-            && !(a_left && a_right) && !(b_left && b_right)
+        from != to
+            && !(a_left && b_left)
+            && !(a_right && b_right)
+            && !(a_left && a_right)
+            && !(b_left && b_right)
     };
     [a, b].into_iter().any(|hull| {
         let next = hull.iter().cycle().skip(1);

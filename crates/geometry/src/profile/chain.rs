@@ -125,7 +125,17 @@ mod tests {
     #[test]
     fn an_l_with_corners_on_its_sides() {
         let corners: Vec<DVec2> = [
-            (0, 0), (1, 0), (2, 0), (4, 0), (4, 1), (2, 1), (1, 1), (1, 2), (1, 4), (0, 4), (0, 2),
+            (0, 0),
+            (1, 0),
+            (2, 0),
+            (4, 0),
+            (4, 1),
+            (2, 1),
+            (1, 1),
+            (1, 2),
+            (1, 4),
+            (0, 4),
+            (0, 2),
         ]
         .map(|(x, y)| DVec2::new(f64::from(x), f64::from(y)))
         .to_vec();
@@ -214,8 +224,8 @@ mod tests {
         for i in 0..n {
             for j in i + 1..n {
                 let (a, b, c, d) = (at(i), at(i + 1), at(j), at(j + 1));
-                let crossing = turn(a, b, c) * turn(a, b, d) < 0.0
-                    && turn(c, d, a) * turn(c, d, b) < 0.0;
+                let crossing =
+                    turn(a, b, c) * turn(a, b, d) < 0.0 && turn(c, d, a) * turn(c, d, b) < 0.0;
                 if crossing || on(a, b, c) || on(a, b, d) || on(c, d, a) || on(c, d, b) {
                     return Some((i, j));
                 }

@@ -21,13 +21,13 @@ const NEAREST_HALVINGS: u32 = 10;
 pub struct Contour {
     curves: Vec<Curve>,
     bounds: [DVec2; 2],
-    /// A single curve with its inside on the left; otherwise orientations say nothing.
-    inside_is_left: bool,
+    /// Where the inside is of all curves, if on the same side of all.
+    inside_is_left: Option<bool>,
 }
 
 impl Contour {
     /// Of curves each of whose ends another one shares; see the type.
-    pub(crate) fn new(curves: Vec<Curve>, inside_is_left: bool) -> Self {
+    pub(crate) fn new(curves: Vec<Curve>, inside_is_left: Option<bool>) -> Self {
         let mut bounds = [DVec2::INFINITY, DVec2::NEG_INFINITY];
         for curve in &curves {
             let [low, high] = curve.bounds();
@@ -38,12 +38,6 @@ impl Contour {
             bounds,
             inside_is_left,
         }
-    }
-
-    /// The same, with the inside on the right if `left` is false.
-    pub(crate) const fn oriented(mut self, left: bool) -> Self {
-        self.inside_is_left = left;
-        self
     }
 
     /// The curves.
@@ -69,9 +63,13 @@ impl Contour {
                 continue;
             }
             let height = curve.combined(0.0, 1.0, -p.y);
-            changes(&height, |u| height.evaluate(u), |u| {
-                inside ^= curve.at(u).x > p.x;
-            });
+            changes(
+                &height,
+                |u| height.evaluate(u),
+                |u| {
+                    inside ^= curve.at(u).x > p.x;
+                },
+            );
         }
         inside
     }
@@ -107,8 +105,8 @@ impl Contour {
             }
         }
         let normal = -best.1.perp().normalize_or(DVec2::X);
-        if self.inside_is_left {
-            return normal;
+        if let Some(left) = self.inside_is_left {
+            return if left { normal } else { -normal };
         }
         let step = normal * ((self.bounds[1] - self.bounds[0]).max_element() * 1e-7);
         if self.contains(p + step) && !self.contains(p - step) {

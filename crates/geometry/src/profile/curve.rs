@@ -68,14 +68,13 @@ impl Curve {
     /// Where it begins.
     #[must_use]
     pub const fn start(&self) -> DVec2 {
-        DVec2::new(self.points[0].x, self.points[0].y)
+        place(self.points[0])
     }
 
     /// Where it ends.
     #[must_use]
     pub const fn end(&self) -> DVec2 {
-        let end = self.points[self.degree];
-        DVec2::new(end.x, end.y)
+        place(self.points[self.degree])
     }
 
     /// Whether it is a straight line.
@@ -123,7 +122,7 @@ impl Curve {
         points[0]
     }
 
-    /// The two halves of a curve without weights.
+    /// The two halves; of a curve with weights their outer weights are not 1.
     #[must_use]
     pub fn halves(&self) -> [Self; 2] {
         let (mut left, mut right) = (*self, *self);
@@ -157,6 +156,10 @@ impl Curve {
         }
         bounds
     }
+}
+
+const fn place(p: DVec3) -> DVec2 {
+    DVec2::new(p.x / p.z, p.y / p.z)
 }
 
 #[cfg(test)]

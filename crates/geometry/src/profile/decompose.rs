@@ -10,6 +10,7 @@ use octray_math::DVec2;
 use super::arrangement::Arrangement;
 use super::chain;
 use super::contour::Contour;
+use super::curve::Curve;
 use super::formula::{Formula, MAX_FORMULA_DEPTH};
 use super::loops::{self, Loop};
 use super::pieces::{Piece, turn};
@@ -32,28 +33,33 @@ pub(crate) struct Decomposition {
     pub(crate) formula: Formula,
 }
 
-/// A curve's side of its chord is bounded by the curve and by an outline of lines on the other
-/// side of the chord, which may not go below this abscissa.
-pub(crate) type LeastX = f64;
+/// What the solid wants of its sides.
+#[derive(Clone, Copy)]
+pub(crate) struct Wishes {
+    /// Contours may not reach below this abscissa.
+    pub(crate) least_x: f64,
+    /// Whether an arc becomes a disc rather than a contour.
+    pub(crate) takes_disc: fn(&Piece) -> bool,
+}
 
 impl Decomposition {
-    pub(crate) fn new(region: &Region, least_x: LeastX) -> Self {
-        Self::by_chords(region, least_x).unwrap_or_else(|| {
+    pub(crate) fn new(region: &Region, wishes: Wishes) -> Self {
+        Self::by_chords(region, wishes).unwrap_or_else(|| {
             let curves = region.pieces.iter().map(Piece::curve).collect();
             Self {
-                sides: vec![PlaneSide::Contour(Contour::new(curves, false))],
+                sides: vec![PlaneSide::Contour(Contour::new(curves, None))],
                 formula: Formula::inside(0),
             }
         })
     }
 
     /// `None` where edges cross, curves meet or the outline is too intricate.
-    fn by_chords(region: &Region, least_x: LeastX) -> Option<Self> {
+    fn by_chords(region: &Region, wishes: Wishes) -> Option<Self> {
         let arrangement = Arrangement::new(&region.pieces)?;
         let loops = loops::trace(&arrangement);
         let mut maker = Maker {
             arrangement: &arrangement,
-            least_x,
+            wishes,
             sides: Vec::new(),
             line_of: vec![None; arrangement.pieces.len()],
             has_loop: vec![false; arrangement.pieces.len()],
@@ -68,7 +74,7 @@ impl Decomposition {
 
 struct Maker<'a> {
     arrangement: &'a Arrangement,
-    least_x: f64,
+    wishes: Wishes,
     sides: Vec<PlaneSide>,
     /// The side of each piece's chord.
     line_of: Vec<Option<u32>>,
@@ -159,7 +165,8 @@ impl Maker<'_> {
             let Piece::Arc { center: own, ends } = self.arrangement.pieces[piece] else {
                 return None;
             };
-            if *center.get_or_insert(own) != own {
+            let wanted = (self.wishes.takes_disc)(&self.arrangement.pieces[piece]);
+            if !wanted || *center.get_or_insert(own) != own {
                 return None;
             }
             rim.get_or_insert(ends[0]);
@@ -187,7 +194,8 @@ impl Maker<'_> {
             return side;
         }
         let source = &self.arrangement.pieces[piece];
-        self.sides.push(PlaneSide::Line(source.start(), source.end()));
+        self.sides
+            .push(PlaneSide::Line(source.start(), source.end()));
         let side = self.sides.len() as u32 - 1;
         self.line_of[piece] = Some(side);
         side
@@ -202,24 +210,24 @@ impl Maker<'_> {
             inside: left,
         };
         let side = match source {
-            Piece::Arc { center, ends } => PlaneSide::Disc(center, ends[0]),
-            _ => PlaneSide::Contour(self.closed(&source, left)),
+            Piece::Arc { center, ends } if (self.wishes.takes_disc)(&source) => {
+                PlaneSide::Disc(center, ends[0])
+            }
+            _ => PlaneSide::Contour(closed_behind_chord(&source, left, self.wishes.least_x)),
         };
         Formula::all([self.side(side), beyond])
     }
-
-    /// A curve closed on the other side of its chord, inside on the left.
-    fn closed(&self, piece: &Piece, left: bool) -> Contour {
-        contour_over_chord(piece, left, self.least_x)
-    }
 }
 
-/// See [`Maker::closed`].
-pub(crate) fn contour_over_chord(piece: &Piece, left: bool, least_x: f64) -> Contour {
-    use super::curve::Curve;
+/// A curve, closed by a corner on the other side of its chord: there it does not matter.
+fn closed_behind_chord(piece: &Piece, left: bool, least_x: f64) -> Contour {
     let curve = piece.curve();
     let (a, b) = (curve.start(), curve.end());
-    let away = if left { -(b - a).perp() } else { (b - a).perp() } * 0.5;
+    let away = if left {
+        -(b - a).perp()
+    } else {
+        (b - a).perp()
+    } * 0.5;
     let middle = (a + b) * 0.5;
     let room = middle.x - least_x;
     let reach = if middle.x + away.x < least_x {
@@ -235,13 +243,17 @@ pub(crate) fn contour_over_chord(piece: &Piece, left: bool, least_x: f64) -> Con
         // The chord lies on the axis, where nothing is crossed.
         curves.push(Curve::line(b, a));
     }
-    Contour::new(curves, true).oriented(!left)
+    Contour::new(curves, Some(!left))
 }
 
 /// Whether a curve lies left of its chord.
 fn curves_left(piece: &Piece) -> bool {
     let (a, b) = (piece.start(), piece.end());
-    let turns = piece.curve().control().map(|p| turn(a, b, p)).collect::<Vec<_>>();
+    let turns = piece
+        .curve()
+        .control()
+        .map(|p| turn(a, b, p))
+        .collect::<Vec<_>>();
     turns.into_iter().any(|t| t > 0.0)
 }
 
@@ -272,20 +284,27 @@ mod tests {
     use super::*;
 
     fn contains(region: &Decomposition, p: DVec2) -> bool {
-        region.formula.evaluate(&|side| match &region.sides[side as usize] {
-            PlaneSide::Line(a, b) => turn(*a, *b, p) > 0.0,
-            PlaneSide::Disc(center, rim) => p.distance(*center) < rim.distance(*center),
-            PlaneSide::Contour(contour) => contour.contains(p),
-        })
+        region
+            .formula
+            .evaluate(&|side| match &region.sides[side as usize] {
+                PlaneSide::Line(a, b) => turn(*a, *b, p) > 0.0,
+                PlaneSide::Disc(center, rim) => p.distance(*center) < rim.distance(*center),
+                PlaneSide::Contour(contour) => contour.contains(p),
+            })
     }
+
+    const ANYWHERE: Wishes = Wishes {
+        least_x: f64::NEG_INFINITY,
+        takes_disc: |_| true,
+    };
 
     /// Compares with the whole region as one contour, away from its boundary.
     fn check(outlines: &[Outline], expects_chords: bool) {
         let region = Region::new(outlines).expect("valid");
-        let by_chords = Decomposition::by_chords(&region, f64::NEG_INFINITY);
+        let by_chords = Decomposition::by_chords(&region, ANYWHERE);
         assert_eq!(by_chords.is_some(), expects_chords);
-        let by_chords = by_chords.unwrap_or_else(|| Decomposition::new(&region, 0.0));
-        let whole = Contour::new(region.pieces.iter().map(Piece::curve).collect(), false);
+        let by_chords = by_chords.unwrap_or_else(|| Decomposition::new(&region, ANYWHERE));
+        let whole = Contour::new(region.pieces.iter().map(Piece::curve).collect(), None);
         let [low, high] = region.bounds();
         for i in 0..60 {
             for j in 0..60 {
@@ -306,7 +325,7 @@ mod tests {
     #[test]
     fn a_circle_is_one_disc() {
         let region = Region::new(&[Outline::circle(at(1.0, 2.0), 3.0)]).expect("valid");
-        let whole = Decomposition::new(&region, f64::NEG_INFINITY);
+        let whole = Decomposition::new(&region, ANYWHERE);
         assert_eq!(whole.formula.literals(), 1);
         check(&[Outline::circle(at(1.0, 2.0), 3.0)], true);
     }
@@ -319,7 +338,10 @@ mod tests {
         check(&[heart.clone()], true);
         let mut slot = Outline::starting_at(at(-2.0, -1.0));
         slot.push(Edge::Line, at(2.0, -1.0));
-        let arc = |x: f64| Edge::Arc { center: at(x, 0.0), clockwise: false };
+        let arc = |x: f64| Edge::Arc {
+            center: at(x, 0.0),
+            clockwise: false,
+        };
         slot.push(arc(2.0), at(2.0, 1.0));
         slot.push(Edge::Line, at(-2.0, 1.0));
         slot.push(arc(-2.0), at(-2.0, -1.0));
@@ -335,13 +357,25 @@ mod tests {
         let mut bite = Outline::starting_at(at(0.0, 0.0));
         bite.push(Edge::Line, at(4.0, 0.0));
         bite.push(Edge::Quadratic(at(3.0, 1.0)), at(4.0, 2.0));
-        bite.push(Edge::Arc { center: at(2.0, 2.0), clockwise: true }, at(0.0, 2.0));
+        bite.push(
+            Edge::Arc {
+                center: at(2.0, 2.0),
+                clockwise: true,
+            },
+            at(0.0, 2.0),
+        );
         check(&[bite], false);
         let mut concave = Outline::starting_at(at(0.0, 0.0));
         concave.push(Edge::Line, at(4.0, 0.0));
         concave.push(Edge::Quadratic(at(3.0, 1.0)), at(4.0, 2.0));
         concave.push(Edge::Line, at(3.0, 2.0));
-        concave.push(Edge::Arc { center: at(2.0, 2.0), clockwise: true }, at(1.0, 2.0));
+        concave.push(
+            Edge::Arc {
+                center: at(2.0, 2.0),
+                clockwise: true,
+            },
+            at(1.0, 2.0),
+        );
         check(&[concave], true);
         let mut lens = Outline::starting_at(at(-1.0, 0.0));
         lens.push(Edge::Quadratic(at(0.0, -1.0)), at(1.0, 0.0));
@@ -363,13 +397,37 @@ mod tests {
         check(&[Outline::polygon(&star)], false);
         // A square with a square hole, joined by a bridge that is traversed twice.
         let keyhole = [
-            (0, 0), (8, 0), (8, 8), (0, 8), (0, 0), (2, 2), (2, 6), (6, 6), (6, 2), (2, 2),
+            (0, 0),
+            (8, 0),
+            (8, 8),
+            (0, 8),
+            (0, 0),
+            (2, 2),
+            (2, 6),
+            (6, 6),
+            (6, 2),
+            (2, 2),
         ];
-        let keyhole: Vec<DVec2> = keyhole.iter().map(|&(x, y)| at(f64::from(x), f64::from(y))).collect();
+        let keyhole: Vec<DVec2> = keyhole
+            .iter()
+            .map(|&(x, y)| at(f64::from(x), f64::from(y)))
+            .collect();
         check(&[Outline::polygon(&keyhole)], true);
         // Two squares that touch in a corner, traversed as one; and one that touches a side.
-        let eight = [(0, 0), (2, 0), (2, 2), (4, 2), (4, 4), (2, 4), (2, 2), (0, 2)];
-        let eight: Vec<DVec2> = eight.iter().map(|&(x, y)| at(f64::from(x), f64::from(y))).collect();
+        let eight = [
+            (0, 0),
+            (2, 0),
+            (2, 2),
+            (4, 2),
+            (4, 4),
+            (2, 4),
+            (2, 2),
+            (0, 2),
+        ];
+        let eight: Vec<DVec2> = eight
+            .iter()
+            .map(|&(x, y)| at(f64::from(x), f64::from(y)))
+            .collect();
         check(&[Outline::polygon(&eight)], true);
         let tent = [at(1.0, 0.0), at(1.5, 1.0), at(0.5, 1.0)];
         let base = [at(0.0, 0.0), at(2.0, 0.0), at(2.0, 1.0), at(0.0, 1.0)];

@@ -36,7 +36,7 @@ pub(super) fn trace(arrangement: &Arrangement) -> Vec<Loop> {
             used[chord] = true;
             path.push((chord as u32, forward));
             let slot = partner[2 * chord + usize::from(forward)];
-            (chord, forward) = (slot / 2, slot % 2 == 0);
+            (chord, forward) = (slot / 2, slot.is_multiple_of(2));
         }
         split_at_repeated_points(arrangement, path, &mut loops);
     }

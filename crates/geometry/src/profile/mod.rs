@@ -6,8 +6,10 @@ mod contour;
 mod curve;
 mod decompose;
 mod formula;
+mod lathe;
 mod loops;
 mod pieces;
+mod prism;
 mod region;
 
 pub use contour::Contour;
@@ -15,3 +17,6 @@ pub(crate) use contour::changes;
 pub use curve::Curve;
 pub use formula::{Formula, MAX_FORMULA_DEPTH};
 pub use region::{Edge, MAX_EDGES, Outline, Region};
+
+pub(crate) use lathe::lathe;
+pub(crate) use prism::prism;

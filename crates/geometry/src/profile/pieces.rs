@@ -19,10 +19,7 @@ pub(crate) enum Piece {
     /// A Bézier curve whose control polygon is convex.
     Bezier(Curve),
     /// A circular arc of at most a quarter turn.
-    Arc {
-        center: DVec2,
-        ends: [DVec2; 2],
-    },
+    Arc { center: DVec2, ends: [DVec2; 2] },
 }
 
 impl Piece {
@@ -87,7 +84,9 @@ pub(super) fn append(
         if p.is_finite() {
             Ok(p + DVec2::ZERO)
         } else {
-            Err(ShapeError::BadProfile("has a coordinate that is not finite"))
+            Err(ShapeError::BadProfile(
+                "has a coordinate that is not finite",
+            ))
         }
     };
     let (from, to) = (clean(from)?, clean(to)?);

@@ -5,18 +5,24 @@
 //! that share a surface share every bit of its crossings.
 
 mod cone;
+mod extrusion;
 mod fingerprint;
+mod found;
 mod local_box;
 mod plane;
+mod revolution;
 mod round;
 mod table;
 #[cfg(test)]
 mod tests;
 mod torus;
 
+use std::sync::Arc;
+
 use octray_math::roots::SignChanges;
 use octray_math::{Aabb, DAffine3, DVec3, Ray};
 
+use crate::profile::Contour;
 use local_box::LocalBox;
 pub(crate) use table::points_upward;
 pub use table::{PLACE_TOLERANCE, SURFACE_TOLERANCE, SurfaceTable};
@@ -62,6 +68,11 @@ pub enum Canonical {
         /// Minor radius over major radius.
         minor: f64,
     },
+    /// A closed curve in the xy plane, drawn out along z without end.
+    Extrusion(Arc<Contour>),
+    /// A closed curve in the half-plane of the distance from the z axis (its x, never negative)
+    /// and the height (its y), turned about the axis.
+    Revolution(Arc<Contour>),
 }
 
 /// On which side of a surface all points of a box lie.
@@ -94,7 +105,15 @@ impl Surface {
                 local_from_scene,
             } => {
                 let Ray { origin, direction } = ray.transformed(local_from_scene);
-                canonical.crossings(origin, direction)
+                match canonical {
+                    Canonical::Extrusion(contour) => {
+                        return extrusion::crossings(contour, origin, direction, &mut visit);
+                    }
+                    Canonical::Revolution(contour) => {
+                        return revolution::crossings(contour, origin, direction, &mut visit);
+                    }
+                    _ => canonical.crossings(origin, direction),
+                }
             }
         };
         changes.as_slice().iter().for_each(|&t| visit(t));
@@ -132,7 +151,7 @@ impl Surface {
 
     /// The work of crossing it, in planes.
     #[must_use]
-    pub const fn cost(&self) -> f64 {
+    pub fn cost(&self) -> f64 {
         match self {
             Self::Plane { .. } => 1.0,
             Self::Curved { canonical, .. } => canonical.cost(),
@@ -148,6 +167,8 @@ impl Canonical {
             Self::Cylinder => round::cylinder(origin, direction),
             Self::Cone { slope } => cone::crossings(*slope, origin, direction),
             Self::Torus { minor } => torus::crossings(*minor, origin, direction),
+            // They may have any number of crossings: see `Surface::crossings`.
+            Self::Extrusion(_) | Self::Revolution(_) => SignChanges::none(false),
         }
     }
 
@@ -157,6 +178,8 @@ impl Canonical {
             Self::Cylinder => round::classify(round::CYLINDER, local),
             Self::Cone { slope } => cone::classify(*slope, local),
             Self::Torus { minor } => torus::classify(*minor, local),
+            Self::Extrusion(contour) => extrusion::classify(contour, local),
+            Self::Revolution(contour) => revolution::classify(contour, local),
         }
     }
 
@@ -168,14 +191,18 @@ impl Canonical {
             Self::Cylinder => p * round::CYLINDER,
             Self::Cone { slope } => cone::gradient(*slope, p),
             Self::Torus { .. } => torus::gradient(p),
+            Self::Extrusion(contour) => extrusion::gradient(contour, p),
+            Self::Revolution(contour) => revolution::gradient(contour, p),
         }
     }
 
-    const fn cost(&self) -> f64 {
+    fn cost(&self) -> f64 {
         match self {
             Self::Sphere | Self::Cylinder => 2.0,
             Self::Cone { .. } => 3.0,
             Self::Torus { .. } => 5.0,
+            Self::Extrusion(contour) => 2.0 + 2.0 * contour.curves().len() as f64,
+            Self::Revolution(contour) => 5.0 + 5.0 * contour.curves().len() as f64,
         }
     }
 }

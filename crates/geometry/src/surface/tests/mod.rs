@@ -3,7 +3,7 @@
 mod classify;
 mod crossings;
 
-use octray_math::DVec3;
+use octray_math::{DVec2, DVec3};
 
 use super::{Canonical, Surface};
 
@@ -21,5 +21,14 @@ pub(crate) fn implicit_value(surface: &Surface, p: DVec3) -> f64 {
         Canonical::Cylinder => q.x * q.x + q.y * q.y - 1.0,
         Canonical::Cone { slope } => libm::hypot(q.x, q.y) - (1.0 + slope * q.z).abs(),
         Canonical::Torus { minor } => libm::hypot(libm::hypot(q.x, q.y) - 1.0, q.z) - minor,
+        Canonical::Extrusion(contour) => outside(contour.contains(q.truncate())),
+        Canonical::Revolution(contour) => {
+            outside(contour.contains(DVec2::new(q.truncate().length(), q.z)))
+        }
     }
+}
+
+/// Only the sign means something.
+fn outside(inside: bool) -> f64 {
+    if inside { -1.0 } else { 1.0 }
 }
