@@ -224,8 +224,6 @@ proptest! {
         prop_assume!(d.length() > 0.1);
         let world = world([model.solid], Accel::Auto, deep());
         let expected = crossings(&world, Ray::new(origin, d), false);
-        // Outlines that cross themselves may enclose slivers thinner than the rounding of a point.
-        prop_assume!(expected.windows(2).all(|pair| pair[1].t - pair[0].t > 1e-12));
         let mut query = RayQuery::new(Ray::new(origin, d));
         for hit in expected {
             let found = closest(&world, query);

@@ -4,6 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use octray_math::DVec2;
 
+use super::curve::Curve;
 use super::pieces::{Piece, turn};
 
 /// Pairs of edges that are compared at most.
@@ -41,10 +42,10 @@ impl Arrangement {
     /// Halves curves until their hulls lie clear of everything else. `None` where edges cross or
     /// curves stay too close to something.
     pub(super) fn new(pieces: &[Piece]) -> Option<Self> {
-        let mut pieces = pieces.to_vec();
+        let mut pieces = without_doubles(pieces);
         let limit = 4 * pieces.len() + 1024;
         for _ in 0..=MAX_ROUNDS {
-            match touches(&pieces) {
+            match touches(&pieces, true) {
                 Ok(touches) => return Some(Self::split(pieces, &touches)),
                 Err(Meeting::Crossing) => return None,
                 Err(Meeting::Close(curves)) => {
@@ -64,6 +65,25 @@ impl Arrangement {
             }
         }
         None
+    }
+
+    /// The boundary of the region as closed curves that may cross; straight edges that lie on each
+    /// other are gone, as far as they do.
+    pub(super) fn boundary(pieces: &[Piece]) -> Vec<Curve> {
+        let pieces = without_doubles(pieces);
+        let is_line = |piece: &&Piece| matches!(piece, Piece::Line(..));
+        let lines: Vec<Piece> = pieces.iter().filter(is_line).copied().collect();
+        let curves = pieces.iter().filter(|p| !is_line(p)).map(Piece::curve);
+        match touches(&lines, false) {
+            Ok(touches) => {
+                let lines = Self::split(lines, &touches);
+                let at = |i: u32| lines.points[i as usize];
+                let chords = lines.chords.iter();
+                let straight = chords.map(|c| Curve::line(at(c.ends[0]), at(c.ends[1])));
+                curves.chain(straight).collect()
+            }
+            Err(_) => pieces.iter().map(Piece::curve).collect(),
+        }
     }
 
     fn split(pieces: Vec<Piece>, touches: &[(usize, DVec2)]) -> Self {
@@ -112,8 +132,37 @@ impl Arrangement {
     }
 }
 
-/// The points at which ends of some pieces touch the chords of others.
-fn touches(pieces: &[Piece]) -> Result<Vec<(usize, DVec2)>, Meeting> {
+/// The pieces less those that are there twice, in either direction: they bound nothing.
+fn without_doubles(pieces: &[Piece]) -> Vec<Piece> {
+    let mut count: BTreeMap<Vec<u64>, bool> = BTreeMap::new();
+    let keys: Vec<Vec<u64>> = pieces
+        .iter()
+        .map(|piece| {
+            let bits = |p: DVec2| p.to_array().map(f64::to_bits);
+            let key: Vec<u64> = piece.curve().control().flat_map(bits).collect();
+            let mut points: Vec<DVec2> = piece.curve().control().collect();
+            points.reverse();
+            key.min(points.into_iter().flat_map(bits).collect())
+        })
+        .collect();
+    for key in &keys {
+        *count.entry(key.clone()).or_insert(false) ^= true;
+    }
+    // The first of an odd number stays.
+    let mut kept = Vec::with_capacity(pieces.len());
+    for (piece, key) in pieces.iter().zip(&keys) {
+        if let Some(is_odd) = count.get_mut(key)
+            && std::mem::take(is_odd)
+        {
+            kept.push(*piece);
+        }
+    }
+    kept
+}
+
+/// The points at which ends of some pieces touch the chords of others; it is an error that edges
+/// cross if they `must_not`.
+fn touches(pieces: &[Piece], must_not_cross: bool) -> Result<Vec<(usize, DVec2)>, Meeting> {
     let hulls: Vec<Vec<DVec2>> = pieces
         .iter()
         .map(|p| p.curve().control().collect())
@@ -147,7 +196,7 @@ fn touches(pieces: &[Piece]) -> Result<Vec<(usize, DVec2)>, Meeting> {
             let [on_c, on_d] = [turn(a, b, c), turn(a, b, d)];
             let [on_a, on_b] = [turn(c, d, a), turn(c, d, b)];
             let opposite = |s: f64, t: f64| (s > 0.0 && t < 0.0) || (s < 0.0 && t > 0.0);
-            if opposite(on_c, on_d) && opposite(on_a, on_b) {
+            if must_not_cross && opposite(on_c, on_d) && opposite(on_a, on_b) {
                 return Err(Meeting::Crossing);
             }
             for (sign, p, piece, ends) in [

@@ -45,7 +45,7 @@ pub(crate) struct Wishes {
 impl Decomposition {
     pub(crate) fn new(region: &Region, wishes: Wishes) -> Self {
         Self::by_chords(region, wishes).unwrap_or_else(|| {
-            let curves = region.pieces.iter().map(Piece::curve).collect();
+            let curves = Arrangement::boundary(&region.pieces);
             Self {
                 sides: vec![PlaneSide::Contour(Contour::new(curves, None))],
                 formula: Formula::inside(0),

@@ -78,7 +78,7 @@ pub(crate) fn point(range: f64) -> impl Strategy<Value = DVec3> {
 
 /// Multiples of 1/2 in [-2, 2], some a few units in the last place or a few surface tolerances off:
 /// what should coincide and what should not.
-pub(crate) fn grid() -> impl Strategy<Value = f64> {
+fn grid() -> impl Strategy<Value = f64> {
     nearly((-4i32..=4).prop_map(|i| f64::from(i) * 0.5))
 }
 
