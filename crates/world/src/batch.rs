@@ -3,14 +3,16 @@
 //! Answers stand in the order of the rays and are the same bits for any number of threads. Beside
 //! them only what the threads have in work is held in memory.
 
+use std::ops::Range;
 use std::sync::atomic::{AtomicBool, Ordering};
 
+use octray_geometry::FaceId;
 use octray_math::{DVec3, Ray};
 use rayon::prelude::*;
 use thiserror::Error;
 
 use crate::solids::Scratch;
-use crate::{Chord, Counters, Hit, Overlaps, RayQuery, Region, World};
+use crate::{Chord, ChordEnd, Counters, Hit, Overlaps, RayQuery, Region, World};
 
 /// Rays that one thread takes at a time. A thread looks after each whether it should stop.
 const SLICE: usize = 1024;
@@ -97,9 +99,26 @@ impl Batch<'_> {
     /// # Errors
     /// See [`BatchError`].
     pub fn closest(&self, rays: &[RayRow]) -> Result<Vec<Hit>, BatchError> {
-        self.each(rays, |ray, scratch| {
+        self.each(rays.len(), |ray, scratch| {
+            let query = whole_query(&rays[ray]);
             self.world
-                .closest_one(&whole_query(ray), scratch, &mut Counters::default())
+                .closest_one(&query, scratch, &mut Counters::default())
+        })
+    }
+
+    /// Position and unit normal of the surface that each ray meets, as [`World::interact`] has them;
+    /// both NaN for a miss.
+    ///
+    /// # Errors
+    /// See [`BatchError`].
+    pub fn surfaces(&self, rays: &[RayRow], hits: &[Hit]) -> Result<Vec<[DVec3; 2]>, BatchError> {
+        self.each(rays.len(), |ray, _| {
+            let hit = &hits[ray];
+            if hit.is_miss() {
+                return [DVec3::NAN; 2];
+            }
+            let surface = self.world.interact(&whole_query(&rays[ray]), hit);
+            [surface.position, surface.normal]
         })
     }
 
@@ -108,8 +127,8 @@ impl Batch<'_> {
     /// # Errors
     /// See [`BatchError`].
     pub fn meets_any(&self, rays: &[RayRow], t_max: f64) -> Result<Vec<bool>, BatchError> {
-        self.each(rays, |ray, scratch| {
-            let query = row_query(ray, t_max);
+        self.each(rays.len(), |ray, scratch| {
+            let query = row_query(&rays[ray], t_max);
             self.world
                 .meets_any(&query, &|_| true, scratch, &mut Counters::default())
         })
@@ -124,11 +143,11 @@ impl Batch<'_> {
         rays: &[RayRow],
         whole_line: bool,
     ) -> Result<Vec<u64>, BatchError> {
-        self.each_with(rays, Vec::new, |ray, scratch, chords| {
-            let line = self.world.line(&whole_query(ray), whole_line);
+        self.each(rays.len(), |ray, scratch| {
+            let line = self.world.line(&whole_query(&rays[ray]), whole_line);
             line.map_or(0, |line| {
                 self.world
-                    .count_on_line(&line, scratch, chords, &mut Counters::default())
+                    .count_on_line(&line, scratch, &mut Counters::default())
             })
         })
     }
@@ -143,12 +162,33 @@ impl Batch<'_> {
         whole_line: bool,
         overlaps: Overlaps,
     ) -> Result<Lists<Chord>, BatchError> {
-        self.lists(rays, |ray, scratch, chords| {
-            if let Some(line) = self.world.line(&whole_query(ray), whole_line) {
+        self.lists(rays.len(), |ray, scratch, chords| {
+            if let Some(line) = self.world.line(&whole_query(&rays[ray]), whole_line) {
                 let counters = &mut Counters::default();
                 self.world
                     .add_chords(&line, overlaps, scratch, chords, counters);
             }
+        })
+    }
+
+    /// The normals at both ends of every chord, as [`World::chord_normal`] has them; NaN where no
+    /// face is crossed.
+    ///
+    /// # Errors
+    /// See [`BatchError`].
+    pub fn chord_normals(
+        &self,
+        rays: &[RayRow],
+        chords: &Lists<Chord>,
+    ) -> Result<Lists<[DVec3; 2]>, BatchError> {
+        self.lists(rays.len(), |ray, _, normals| {
+            let query = whole_query(&rays[ray]);
+            let normal = |end: &ChordEnd| match end.face {
+                FaceId::NONE => DVec3::NAN,
+                _ => self.world.chord_normal(&query, end),
+            };
+            let own = chords.of(ray).iter();
+            normals.extend(own.map(|chord| [normal(&chord.enter), normal(&chord.exit)]));
         })
     }
 
@@ -157,8 +197,8 @@ impl Batch<'_> {
     /// # Errors
     /// See [`BatchError`].
     pub fn crossings(&self, rays: &[RayRow], whole_line: bool) -> Result<Lists<Hit>, BatchError> {
-        self.lists(rays, |ray, scratch, hits| {
-            if let Some(line) = self.world.line(&whole_query(ray), whole_line) {
+        self.lists(rays.len(), |ray, scratch, hits| {
+            if let Some(line) = self.world.line(&whole_query(&rays[ray]), whole_line) {
                 self.world
                     .add_crossings(&line, scratch, hits, &mut Counters::default());
             }
@@ -170,54 +210,42 @@ impl Batch<'_> {
     /// # Errors
     /// See [`BatchError`].
     pub fn regions(&self, points: &[[f64; 3]]) -> Result<Vec<Region>, BatchError> {
-        self.each(points, |&point, scratch| {
+        self.each(points.len(), |point, scratch| {
             self.world
-                .region_of(point.into(), scratch, &mut Counters::default())
+                .region_of(points[point].into(), scratch, &mut Counters::default())
         })
     }
 
-    /// `answer` for every row.
-    fn each<R: Sync, T: Send>(
+    /// `answer` for every index.
+    fn each<T: Send>(
         &self,
-        rows: &[R],
-        answer: impl Fn(&R, &mut Scratch) -> T + Sync,
+        count: usize,
+        answer: impl Fn(usize, &mut Scratch) -> T + Sync,
     ) -> Result<Vec<T>, BatchError> {
-        self.each_with(rows, || (), |row, scratch, ()| answer(row, scratch))
-    }
-
-    /// The same with working memory that is made for each slice.
-    fn each_with<R: Sync, T: Send, W>(
-        &self,
-        rows: &[R],
-        memory: impl Fn() -> W + Sync,
-        answer: impl Fn(&R, &mut Scratch, &mut W) -> T + Sync,
-    ) -> Result<Vec<T>, BatchError> {
-        let slices = self.slices(rows, |slice, scratch| {
-            let mut memory = memory();
-            let answers = slice.iter().map(|row| answer(row, scratch, &mut memory));
-            answers.collect::<Vec<T>>()
+        let slices = self.slices(count, |slice, scratch| {
+            slice.map(|i| answer(i, scratch)).collect::<Vec<T>>()
         })?;
-        let mut all = room(rows.len())?;
+        let mut all = room(count)?;
         all.extend(slices.into_iter().flatten());
         Ok(all)
     }
 
-    /// What `add` adds for every ray.
+    /// What `add` adds for every index.
     fn lists<T: Send>(
         &self,
-        rays: &[RayRow],
-        add: impl Fn(&RayRow, &mut Scratch, &mut Vec<T>) + Sync,
+        count: usize,
+        add: impl Fn(usize, &mut Scratch, &mut Vec<T>) + Sync,
     ) -> Result<Lists<T>, BatchError> {
-        let slices = self.slices(rays, |slice, scratch| {
+        let slices = self.slices(count, |slice, scratch| {
             let mut items = Vec::with_capacity(slice.len());
             let mut ends = Vec::with_capacity(slice.len());
-            for ray in slice {
-                add(ray, scratch, &mut items);
+            for index in slice {
+                add(index, scratch, &mut items);
                 ends.push(items.len() as u64);
             }
             (ends, items)
         })?;
-        let mut offsets = room(rays.len() + 1)?;
+        let mut offsets = room(count + 1)?;
         offsets.push(0);
         let mut items = room(slices.iter().map(|(_, items)| items.len()).sum())?;
         for (ends, part) in slices {
@@ -228,23 +256,26 @@ impl Batch<'_> {
         Ok(Lists { offsets, items })
     }
 
-    /// `work` on every slice of the rows, in order.
-    fn slices<R: Sync, T: Send>(
+    /// `work` on every slice of the indices, in order.
+    fn slices<T: Send>(
         &self,
-        rows: &[R],
-        work: impl Fn(&[R], &mut Scratch) -> T + Sync,
+        count: usize,
+        work: impl Fn(Range<usize>, &mut Scratch) -> T + Sync,
     ) -> Result<Vec<T>, BatchError> {
-        let one = |slice: &[R]| {
+        let one = |slice: usize| {
             if self.cancel.load(Ordering::Relaxed) {
                 return Err(BatchError::Cancelled);
             }
-            Ok(self.world.scratch.with(|scratch| work(slice, scratch)))
+            let start = slice * SLICE;
+            let indices = start..count.min(start + SLICE);
+            Ok(self.world.scratch.with(|scratch| work(indices, scratch)))
         };
-        // A few rows are answered before another thread would have started.
-        if rows.len() <= SLICE {
-            return rows.chunks(SLICE).map(one).collect();
+        let slices = count.div_ceil(SLICE);
+        // A few rays are answered before another thread would have started.
+        if slices <= 1 {
+            return (0..slices).map(one).collect();
         }
-        rows.par_chunks(SLICE).map(one).collect()
+        (0..slices).into_par_iter().map(one).collect()
     }
 }
 

@@ -115,35 +115,33 @@ impl World {
         &self,
         query: &RayQuery,
         whole_line: bool,
-        chords: &mut Vec<Chord>,
         counters: &mut Counters,
     ) -> u64 {
         counters.rays += 1;
-        let Some(line) = self.line(query, whole_line) else {
-            chords.clear();
-            return 0;
-        };
-        self.scratch
-            .with(|scratch| self.count_on_line(&line, scratch, chords, counters))
+        self.line(query, whole_line).map_or(0, |line| {
+            self.scratch
+                .with(|scratch| self.count_on_line(&line, scratch, counters))
+        })
     }
 
     pub(crate) fn count_on_line(
         &self,
         line: &Line,
         scratch: &mut Scratch,
-        chords: &mut Vec<Chord>,
         counters: &mut Counters,
     ) -> u64 {
+        let mut chords = std::mem::take(&mut scratch.counted);
         chords.clear();
-        self.add_chords(line, Overlaps::Priorities, scratch, chords, counters);
+        self.add_chords(line, Overlaps::Priorities, scratch, &mut chords, counters);
         let ends = chords.iter().flat_map(|c| [c.enter.face, c.exit.face]);
-        let crossed = ends.filter(|face| *face != FaceId::NONE).count();
+        let crossed = ends.filter(|face| *face != FaceId::NONE).count() as u64;
+        scratch.counted = chords;
         let mut sheets = 0;
         self.sheets.visit_line(line, f64::INFINITY, counters, |_| {
             sheets += 1;
             f64::INFINITY
         });
-        crossed as u64 + sheets
+        crossed + sheets
     }
 
     /// The unit normal at an end of one of the ray's chords, pointing out of the chord's solid (or

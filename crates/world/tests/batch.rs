@@ -98,8 +98,7 @@ fn batches_give_what_single_rays_give_for_any_number_of_threads() {
                     let query = row_query(ray, f64::INFINITY);
                     world.crossings(&query, whole, &mut hits, &mut counters);
                     assert_eq!(crossings.of(i), hits);
-                    let count =
-                        world.count_crossings(&query, whole, &mut Vec::new(), &mut counters);
+                    let count = world.count_crossings(&query, whole, &mut counters);
                     assert_eq!(counts[i], count);
                 }
             }
