@@ -1,107 +1,27 @@
-//! Rays as arrays in, answers as arrays out.
+//! The nearest surface on each ray.
 
 use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
 
-use numpy::{IntoPyArray, PyArrayDyn, PyArrayMethods, PyUntypedArrayMethods};
-use octray::math::{DVec3, Ray};
-use octray::world::{Counters, Hit, RayQuery, World};
-use pyo3::exceptions::PyValueError;
+use numpy::{IntoPyArray, PyArrayDyn, PyArrayMethods};
+use octray::world::{Batch, Hit, RayRow, World};
 use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
-use rayon::prelude::*;
+use pyo3::types::PyDict;
 
-use crate::arrays::{Shape, real_array};
-use crate::pool::pool;
+use super::rows::{Method, Rays, count_invalid};
 use crate::scene::Scene;
-use crate::task;
-use crate::world::prepared;
 
-/// Rays that one thread takes at a time.
-const SLICE: usize = 1024;
-
-/// Rays `(ox, oy, oz, dx, dy, dz)`, with the axes that stood before the last.
-struct Rays {
-    numbers: Arc<Vec<[f64; 6]>>,
-    shape: Vec<usize>,
-    far: f64,
-}
-
-fn query(ray: &[f64; 6], far: f64) -> RayQuery {
-    let [ox, oy, oz, dx, dy, dz] = *ray;
-    RayQuery {
-        t_max: far,
-        ..RayQuery::new(Ray::new(DVec3::new(ox, oy, oz), DVec3::new(dx, dy, dz)))
-    }
-}
-
-impl Rays {
-    fn new(rays: &Bound<'_, PyAny>, far: f64) -> PyResult<Self> {
-        if far.is_nan() {
-            return Err(PyValueError::new_err("tfar must be a number"));
-        }
-        let array = real_array("rays", rays, Shape::any(6))?;
-        let mut shape = array.shape().to_vec();
-        shape.pop();
-        Ok(Self {
-            numbers: Arc::new(array.as_slice()?.as_chunks::<6>().0.to_vec()),
-            shape,
-            far,
-        })
-    }
-
-    /// `answer` for all rays in slices, by all threads; in order, whatever the threads do.
-    fn answer<T: Send + 'static>(
-        &self,
-        scene: &Bound<'_, Scene>,
-        (accel, threads): (&str, Option<usize>),
-        answer: impl Fn(&World, &[RayQuery], &mut Vec<T>) + Send + Sync + 'static,
-    ) -> PyResult<(Arc<World>, Vec<T>)> {
-        let world = prepared(scene, accel, threads)?.world;
-        let pool = pool(threads)?;
-        let (shared, numbers, far) = (Arc::clone(&world), Arc::clone(&self.numbers), self.far);
-        let one_slice = move |rays: &[[f64; 6]], cancel: &AtomicBool| {
-            let mut answers = Vec::with_capacity(rays.len());
-            if !cancel.load(Ordering::Relaxed) {
-                let queries: Vec<RayQuery> = rays.iter().map(|ray| query(ray, far)).collect();
-                answer(&shared, &queries, &mut answers);
-            }
-            answers
-        };
-        let py = scene.py();
-        // A few rays are answered before a thread would have started.
-        let answers = if numbers.len() <= SLICE {
-            py.detach(|| one_slice(&numbers, &AtomicBool::new(false)))
-        } else {
-            task::run(py, move |cancel| {
-                pool.install(|| {
-                    let slices: Vec<Vec<T>> = numbers
-                        .par_chunks(SLICE)
-                        .map(|rays| one_slice(rays, cancel))
-                        .collect();
-                    slices.into_iter().flatten().collect()
-                })
-            })?
-        };
-        Ok((world, answers))
-    }
-
-    fn shaped<'py, T: numpy::Element>(
-        &self,
-        py: Python<'py>,
-        values: Vec<T>,
-    ) -> PyResult<Bound<'py, PyArrayDyn<T>>> {
-        values.into_pyarray(py).reshape(self.shape.as_slice())
-    }
-}
+/// What Open3D writes where a ray meets nothing.
+const OPEN3D_NONE: u32 = u32::MAX;
 
 /// The nearest surface on each ray. Arrays have the rays' leading axes; a ray that meets nothing
 /// has `t` infinite and ids -1.
 #[pyclass(frozen, module = "octray")]
 pub(crate) struct Hits {
     world: Arc<World>,
+    threads: Option<usize>,
     rays: Rays,
-    hits: Vec<Hit>,
+    hits: Arc<Vec<Hit>>,
     surface: PyOnceLock<Surface>,
 }
 
@@ -115,28 +35,16 @@ impl Hits {
     /// Positions and normals, computed when either is first asked for; NaN where there is no hit.
     fn surface(&self, py: Python<'_>) -> PyResult<&Surface> {
         self.surface.get_or_try_init(py, || {
-            let (positions, normals): (Vec<[f64; 3]>, Vec<[f64; 3]>) = py.detach(|| {
-                let nowhere = [f64::NAN; 3];
-                let rays = self.rays.numbers.iter();
-                rays.zip(&self.hits)
-                    .map(|(ray, hit)| {
-                        if hit.is_miss() {
-                            return (nowhere, nowhere);
-                        }
-                        let surface = self.world.interact(&query(ray, self.rays.far), hit);
-                        (surface.position.to_array(), surface.normal.to_array())
-                    })
-                    .unzip()
-            });
-            let mut shape = self.rays.shape.clone();
-            shape.push(3);
-            let array = |rows: Vec<[f64; 3]>| -> PyResult<Py<PyArrayDyn<f64>>> {
-                let flat = rows.into_flattened().into_pyarray(py);
-                Ok(flat.reshape(shape.as_slice())?.unbind())
+            let hits = Arc::clone(&self.hits);
+            let ask = move |batch: &Batch<'_>, rays: &[RayRow]| batch.surfaces(rays, &hits);
+            let surfaces = self.rays.ask_world(py, &self.world, self.threads, ask)?;
+            let array = |which: usize| -> PyResult<Py<PyArrayDyn<f64>>> {
+                let vectors = surfaces.iter().map(|s| s[which].to_array()).collect();
+                Ok(self.rays.shaped_vectors(py, vectors)?.unbind())
             };
             Ok(Surface {
-                positions: array(positions)?,
-                normals: array(normals)?,
+                positions: array(0)?,
+                normals: array(1)?,
             })
         })
     }
@@ -197,6 +105,39 @@ impl Hits {
             .shaped(py, self.hits.iter().map(|hit| !hit.is_miss()).collect())
     }
 
+    /// How many of the rays are none, and so miss: those with a NaN or an infinity, or without
+    /// direction.
+    #[getter]
+    fn invalid_rays(&self, py: Python<'_>) -> usize {
+        py.detach(|| count_invalid(&self.world, &self.rays.numbers))
+    }
+
+    /// A dictionary with the keys and conventions of Open3D's `RaycastingScene.cast_rays`: `t_hit`
+    /// (float64, infinite for a miss), `geometry_ids` and `primitive_ids` (uint32, 4294967295 for a
+    /// miss; a primitive is a triangle of its mesh or a face of its solid, counted from 0), and
+    /// `primitive_normals` (float64, (..., 3), 0 for a miss). There are no `primitive_uvs`: exact
+    /// surfaces have no triangles.
+    fn to_open3d<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let faces = self.hits.iter();
+        let faces = faces.map(|hit| self.world.face_in_object(hit.face));
+        let (geometries, primitives): (Vec<u32>, Vec<u32>) = faces
+            .map(|face| face.map_or((OPEN3D_NONE, OPEN3D_NONE), |(object, n)| (object.0, n)))
+            .unzip();
+        let normals = self.normal(py)?.to_vec()?;
+        let normals = normals
+            .into_iter()
+            .map(|x| if x.is_nan() { 0.0 } else { x });
+        let mut shape = self.rays.shape.clone();
+        shape.push(3);
+        let normals = normals.collect::<Vec<f64>>().into_pyarray(py);
+        let answers = PyDict::new(py);
+        answers.set_item("t_hit", self.t(py)?)?;
+        answers.set_item("geometry_ids", self.rays.shaped(py, geometries)?)?;
+        answers.set_item("primitive_ids", self.rays.shaped(py, primitives)?)?;
+        answers.set_item("primitive_normals", normals.reshape(shape.as_slice())?)?;
+        Ok(answers)
+    }
+
     fn __len__(&self) -> usize {
         self.hits.len()
     }
@@ -211,49 +152,15 @@ impl Hits {
 pub(crate) fn cast_rays(
     scene: &Bound<'_, Scene>,
     rays: &Bound<'_, PyAny>,
-    method: (&str, Option<usize>),
+    method: Method<'_>,
 ) -> PyResult<Hits> {
-    let rays = Rays::new(rays, f64::INFINITY)?;
-    let (world, hits) = rays.answer(scene, method, |world, queries, hits| {
-        world.closest(queries, hits, &mut Counters::default());
-    })?;
+    let rays = Rays::new("rays", rays)?;
+    let (world, hits) = rays.ask(scene, method, |batch, rays| batch.closest(rays))?;
     Ok(Hits {
         world,
+        threads: method.1,
         rays,
-        hits,
+        hits: Arc::new(hits),
         surface: PyOnceLock::new(),
     })
-}
-
-/// How many boundaries each ray crosses.
-pub(crate) fn count_intersections<'py>(
-    scene: &Bound<'py, Scene>,
-    rays: &Bound<'py, PyAny>,
-    method: (&str, Option<usize>),
-) -> PyResult<Bound<'py, PyArrayDyn<i64>>> {
-    let rays = Rays::new(rays, f64::INFINITY)?;
-    let (_, counts) = rays.answer(scene, method, |world, queries, counts| {
-        let mut crossings = Vec::new();
-        for query in queries {
-            world.crossings(query, false, &mut crossings, &mut Counters::default());
-            counts.push(crossings.len() as i64);
-        }
-    })?;
-    rays.shaped(scene.py(), counts)
-}
-
-/// Whether each ray meets anything, transparent or not, before `far`.
-pub(crate) fn test_occlusions<'py>(
-    scene: &Bound<'py, Scene>,
-    rays: &Bound<'py, PyAny>,
-    far: f64,
-    method: (&str, Option<usize>),
-) -> PyResult<Bound<'py, PyArrayDyn<bool>>> {
-    let rays = Rays::new(rays, far)?;
-    let (_, blocked) = rays.answer(scene, method, |world, queries, blocked| {
-        let mut hits = Vec::new();
-        world.closest(queries, &mut hits, &mut Counters::default());
-        blocked.extend(hits.iter().map(|hit| !hit.is_miss()));
-    })?;
-    rays.shaped(scene.py(), blocked)
 }
