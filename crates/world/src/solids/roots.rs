@@ -6,7 +6,7 @@ use std::ops::Range;
 use super::Solids;
 use super::sweep::Event;
 use crate::Counters;
-use crate::chords::ChordScratch;
+use crate::chords::{Chord, ChordScratch};
 use crate::line::Line;
 use octray_geometry::FaceId;
 use octray_tree::{WalkCost, WalkStack};
@@ -69,6 +69,8 @@ pub(crate) struct Scratch {
     pub(super) inside_after: Vec<bool>,
     pub(super) stack: WalkStack,
     pub(crate) chords: ChordScratch,
+    /// Chords that are only counted.
+    pub(crate) counted: Vec<Chord>,
     mesh_roots: Vec<octray_geometry::mesh::MeshCrossing>,
 }
 
