@@ -7,9 +7,11 @@
 
 pub mod cell_tree;
 pub mod encoding;
+mod grid;
 pub mod traversal;
 pub mod triangle_cube;
 pub mod wide_tree;
 
 pub use cell_tree::{Cell, CellTree, CellTreeStats, Criteria, Node, Subdivide, WalkStack};
+pub use grid::Grid;
 pub use wide_tree::{WalkCost, WideTree, WideTreeConfig, WideTreeError, WideTreeStats};
