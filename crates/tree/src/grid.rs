@@ -25,6 +25,9 @@ struct Block {
 }
 
 impl Grid {
+    /// The most voxels on one axis that one may ask for.
+    pub const MAX_RESOLUTION: u32 = 1024;
+
     /// Voxels per axis for a number of things in a box: as many voxels as things, twice over, as near
     /// to cubes as they come, at most `limit` of them and at most 2048 on an axis.
     #[must_use]
