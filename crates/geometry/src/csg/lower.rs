@@ -7,8 +7,11 @@ use octray_math::DAffine3;
 use super::code::{Code, Constant, Operation, Writer};
 use super::facets;
 use crate::mesh::FacetPlanes;
+use crate::profile::Formula;
 use crate::surface::{Surface, SurfaceTable};
-use crate::{FaceId, MaterialId, Primitive, SceneFrame, Solid, SolidNode, SurfaceId, TriangleMesh};
+use crate::{
+    Composite, FaceId, MaterialId, Primitive, SceneFrame, Solid, SolidNode, SurfaceId, TriangleMesh,
+};
 
 /// One face of one operand: the literal of the expressions.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -55,6 +58,12 @@ struct Context {
     scene_from_here: DAffine3,
     complemented: bool,
     material: Option<MaterialId>,
+}
+
+/// The sides of a composite, and the faces that stand for their insides and outsides so far.
+struct Named {
+    sides: Vec<(SurfaceId, bool)>,
+    faces: Vec<[Option<FaceId>; 2]>,
 }
 
 impl Lowering {
@@ -120,6 +129,9 @@ impl Lowering {
         let of = |b: bool| Some(if b { Constant::True } else { Constant::False });
         match solid.node() {
             SolidNode::Empty => of(context.complemented),
+            SolidNode::Primitive(Primitive::Composite(composite)) => {
+                self.composite(composite, context, writer)
+            }
             SolidNode::Primitive(primitive) => {
                 self.primitive(primitive, context, writer);
                 None
@@ -193,6 +205,67 @@ impl Lowering {
                 },
                 writer,
             );
+            if writer.operand(&mut open, start, constant) {
+                return Some(match operation {
+                    Operation::And => Constant::False,
+                    Operation::Or => Constant::True,
+                });
+            }
+        }
+        writer.close(&open)
+    }
+
+    fn composite(
+        &mut self,
+        composite: &Arc<Composite>,
+        context: &Context,
+        writer: &mut Writer,
+    ) -> Option<Constant> {
+        let primitive = Primitive::Composite(Arc::clone(composite));
+        let sides = self.sides(&primitive, &context.scene_from_here);
+        let mut named = Named {
+            sides,
+            faces: vec![[None; 2]; composite.faces().len()],
+        };
+        self.formula(composite.formula(), &mut named, context, writer)
+    }
+
+    fn formula(
+        &mut self,
+        formula: &Formula,
+        named: &mut Named,
+        context: &Context,
+        writer: &mut Writer,
+    ) -> Option<Constant> {
+        let (operation, parts) = match formula {
+            Formula::Constant(value) if *value != context.complemented => {
+                return Some(Constant::True);
+            }
+            Formula::Constant(_) => return Some(Constant::False),
+            Formula::Side { side, inside } => {
+                let turned = context.complemented == *inside;
+                let (surface, inside_is_positive) = named.sides[*side as usize];
+                let next = FaceId(self.faces.len() as u32);
+                let face = *named.faces[*side as usize][usize::from(turned)].get_or_insert(next);
+                if face == next {
+                    self.faces.push(Face {
+                        surface,
+                        inside_is_positive: inside_is_positive ^ turned,
+                        material: context.material,
+                    });
+                }
+                writer.literal(face);
+                return None;
+            }
+            Formula::All(parts) if context.complemented => (Operation::Or, parts),
+            Formula::Any(parts) if context.complemented => (Operation::And, parts),
+            Formula::All(parts) => (Operation::And, parts),
+            Formula::Any(parts) => (Operation::Or, parts),
+        };
+        let mut open = writer.open(operation);
+        for part in parts {
+            let start = writer.position();
+            let constant = self.formula(part, named, context, writer);
             if writer.operand(&mut open, start, constant) {
                 return Some(match operation {
                     Operation::And => Constant::False,

@@ -5,11 +5,12 @@ use std::ops::Range;
 
 use super::Solids;
 use super::sweep::Event;
+use super::volumes::VolumeHits;
 use crate::Counters;
-use crate::chords::ChordScratch;
+use crate::chords::{Chord, ChordScratch};
 use crate::line::Line;
 use octray_geometry::FaceId;
-use octray_tree::{WalkCost, WalkStack};
+use octray_tree::{WalkCost, WalkMemory};
 
 /// A crossing of a surface, in the line's parameter.
 #[derive(Clone, Copy, Debug)]
@@ -17,6 +18,16 @@ pub(super) struct Root {
     pub(super) s: f64,
     /// For a mesh: which triangle.
     pub(super) triangle: u32,
+}
+
+impl Root {
+    /// There is one zero: parameters are compared by value and sorted by their bits.
+    fn new(s: f64, triangle: u32) -> Self {
+        Self {
+            s: s + 0.0,
+            triangle,
+        }
+    }
 }
 
 /// Where one surface's roots lie in the scratch.
@@ -57,8 +68,11 @@ pub(crate) struct Scratch {
     pub(super) events: Vec<Event>,
     pub(super) inside: Vec<bool>,
     pub(super) inside_after: Vec<bool>,
-    pub(super) stack: WalkStack,
+    pub(super) walk: WalkMemory,
+    pub(super) volume_hits: VolumeHits,
     pub(crate) chords: ChordScratch,
+    /// Chords that are only counted.
+    pub(crate) counted: Vec<Chord>,
     mesh_roots: Vec<octray_geometry::mesh::MeshCrossing>,
 }
 
@@ -93,7 +107,7 @@ impl Solids {
                 Some(surface) => {
                     counters.surface_tests += 1;
                     let roots = &mut scratch.roots;
-                    surface.crossings(&line.ray, |s| roots.push(Root { s, triangle: 0 }))
+                    surface.crossings(&line.ray, |s| roots.push(Root::new(s, 0)))
                 }
                 None => {
                     let mesh = &self.meshes[index - self.surfaces.len()].solid;
@@ -102,10 +116,8 @@ impl Solids {
                     mesh.crossings(&line.ray, &mut scratch.mesh_roots, &mut cost);
                     counters.add_walk(&cost);
                     let found = scratch.mesh_roots.iter();
-                    scratch.roots.extend(found.map(|c| Root {
-                        s: c.t,
-                        triangle: c.triangle,
-                    }));
+                    let roots = found.map(|c| Root::new(c.t, c.triangle));
+                    scratch.roots.extend(roots);
                     false
                 }
             };
