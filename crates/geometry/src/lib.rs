@@ -7,7 +7,9 @@
 pub mod csg;
 mod frame;
 mod identity;
+mod implicit;
 pub mod mesh;
+mod polynomial;
 mod primitive;
 mod sheet;
 mod solid;
@@ -16,6 +18,7 @@ pub mod surface;
 pub use frame::SceneFrame;
 pub use identity::{FaceId, MaterialId, SurfaceId};
 pub use mesh::{CornerAttribute, MeshError, MeshRule, TriangleMesh};
+pub use polynomial::Polynomial;
 pub use primitive::{ConvexPolyhedron, Primitive, ShapeError};
 pub use sheet::Sheet;
 pub use solid::{MAX_NESTING, MAX_OPERANDS, Solid, SolidNode};

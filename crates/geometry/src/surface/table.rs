@@ -83,6 +83,11 @@ impl SurfaceTable {
         SurfaceId(id)
     }
 
+    /// How far two surfaces may be apart to count as one, in units of the scene's size.
+    pub(crate) const fn tolerance(&self) -> f64 {
+        self.tolerance
+    }
+
     /// How many insertions found a surface that was there.
     #[must_use]
     pub const fn merged(&self) -> usize {

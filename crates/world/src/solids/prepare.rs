@@ -4,6 +4,7 @@ use std::cmp::Ordering;
 
 use octray_geometry::csg::{Constant, Face, Lowered, Lowering, MeshOperand};
 use octray_geometry::mesh::{MeshError, MeshSolid};
+use octray_geometry::surface::{PLACE_TOLERANCE, SURFACE_TOLERANCE};
 use octray_geometry::{FaceId, MaterialId, SceneFrame, Sheet, Solid};
 use octray_math::Aabb;
 use octray_scene::{Object, ObjectId, Scene, Shape};
@@ -31,10 +32,12 @@ impl<'a> Candidate<'a> {
         };
         // By the same transforms as the faces, so that rounding far from the origin moves both.
         let scene_from_world = frame.scene_from_world();
+        // What merged surfaces and rounding move, many times over.
+        let slack = 64.0 * (SURFACE_TOLERANCE * frame.size + PLACE_TOLERANCE * frame.largest());
         let bounds = [Some(boundary), clip]
             .into_iter()
             .flatten()
-            .map(|solid| solid.bounds_in(&scene_from_world))
+            .map(|solid| solid.enclosure_in(&scene_from_world, slack))
             .fold(Aabb::ALL, Aabb::intersection);
         let bounds = if bounds.is_empty() {
             Aabb::EMPTY
@@ -257,6 +260,7 @@ fn mesh_surfaces(
             let object = ranked[face_owner[literal as usize] as usize].object;
             (scene.objects()[object.0 as usize].name.clone(), error)
         })?;
+        let solid = solid.with_planes(operand.planes.clone());
         let triangles = solid.triangle_count();
         meshes.push(MeshSurface {
             solid,
