@@ -27,14 +27,27 @@ impl Place {
         Self { frame, center }
     }
 
+    /// `shift` to within a 512th of the scene's size, as a short number: a line whose coordinates
+    /// are short numbers then has an exact origin, and crosses the planes that meet in an edge at
+    /// one parameter if it goes through the edge.
+    fn short(&self, shift: f64) -> f64 {
+        let step = libm::ldexp(1.0, libm::ilogb(self.frame.size) - 8);
+        let steps = libm::rint(shift / step);
+        if steps.is_finite() {
+            steps * step
+        } else {
+            shift
+        }
+    }
+
     /// A point of the world in the scene's coordinates.
     pub(crate) fn scene_from_world(&self, point: DVec3) -> DVec3 {
         point - self.frame.origin
     }
 }
 
-/// A ray in the coordinates of the scene whose origin lies at its closest approach to the scene's centre and whose direction's
-/// largest component lies in `[1, 2)`.
+/// A ray in the coordinates of the scene whose origin lies about at its closest approach to the
+/// scene's centre and whose direction's largest component lies in `[1, 2)`.
 ///
 /// Everything is tested against `ray` and compared by its parameter `s`; the user's parameter is
 /// `t = (s - origin) / scale`. Far origins then cost no digits, and no length of direction
@@ -74,7 +87,7 @@ impl Line {
         // Powers of two: exact, except for directions so small that they have few digits anyway.
         let (direction, scale) = scaled(direction, largest);
         let unit = Ray::new(origin - place.frame.origin, direction);
-        let shift = unit.closest_approach(place.center);
+        let shift = place.short(unit.closest_approach(place.center));
         let ray = unit.shifted(shift);
         if !(ray.origin.is_finite() && scale > 0.0) {
             return None;
