@@ -13,7 +13,7 @@ mod sheet;
 mod solid;
 pub mod surface;
 
-pub use frame::SceneFrame;
+pub use frame::{SceneFrame, finite_box};
 pub use identity::{FaceId, MaterialId, SurfaceId};
 pub use mesh::{CornerAttribute, MeshError, MeshRule, TriangleMesh};
 pub use primitive::{ConvexPolyhedron, Primitive, ShapeError};

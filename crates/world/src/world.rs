@@ -113,7 +113,7 @@ impl World {
         }
         let criteria = accelerate.then_some(&config.criteria);
         let triangles = accelerate.then_some(&config.triangles);
-        let place = Place::new(&scene.bounds());
+        let place = Place::new(&scene);
         let solids = Solids::prepare(&scene, &place.frame, criteria, triangles)
             .map_err(|(object, error)| WorldError::Mesh { object, error })?;
         let sheets = Sheets::prepare(&scene, &place.frame, solids.face_count(), triangles)?;

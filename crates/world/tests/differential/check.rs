@@ -290,6 +290,10 @@ fn check_region(
 /// hold the line too: there is no wall. Whether that could be compared.
 fn check_in_face(sight: &Sight<'_>, engine: &Engine<'_>, t: f64) -> Result<bool, Disagreement> {
     let distance = 1024.0 * sight.uncertainty(t);
+    // Far away from the scene, planes that are apart in it are as good as one.
+    if sight.ray().at(t).distance(sight.center()) > 4.0 * sight.radius() {
+        return Ok(false);
+    }
     let Some(normal) = sight.shared_normal(t, 4.0 * distance) else {
         return Ok(false);
     };

@@ -15,7 +15,7 @@ mod sight;
 use std::cmp::Ordering;
 
 use octray_geometry::surface::{PLACE_TOLERANCE, SURFACE_TOLERANCE};
-use octray_geometry::{Primitive, SceneFrame, Solid, SolidNode};
+use octray_geometry::{Primitive, SceneFrame, Solid, SolidNode, finite_box};
 use octray_math::{Aabb, DAffine3, DVec3, Ray};
 use octray_scene::{Scene, Shape};
 
@@ -120,7 +120,14 @@ impl Oracle {
         } else {
             (all.center(), all.diagonal())
         };
-        let frame = SceneFrame::new(&scene.bounds());
+        let unbounded = scene.objects().iter().filter_map(|object| {
+            let bounds = object.shape.bounds();
+            match &object.shape {
+                Shape::Solid(solid) if !bounds.is_empty() && !bounds.is_bounded() => Some(solid),
+                _ => None,
+            }
+        });
+        let frame = SceneFrame::new(&finite_box(scene.bounds(), unbounded));
         Self {
             leaves,
             owners,
