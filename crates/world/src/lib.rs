@@ -4,7 +4,9 @@
 //! above it. Its answers are the same bits whatever structure finds them: a structure only proposes
 //! what to test, one `f64` function per shape decides, and ties go to the lowest face.
 
+mod batch;
 mod chords;
+mod faces;
 mod interact;
 mod line;
 mod query;
@@ -12,6 +14,7 @@ mod sheets;
 mod solids;
 mod world;
 
+pub use batch::{Batch, BatchError, Lists, RayRow, row_query};
 pub use chords::{Chord, ChordEnd, Overlaps};
 pub use query::{Counters, Departure, Hit, RayQuery, Region, SurfaceHit};
 pub use world::{Accel, World, WorldConfig, WorldError, WorldStats};

@@ -187,8 +187,13 @@ impl World {
         });
     }
 
-    fn closest_one(&self, query: &RayQuery, scratch: &mut Scratch, counters: &mut Counters) -> Hit {
-        let Some(line) = Line::new(query, &self.place) else {
+    pub(crate) fn closest_one(
+        &self,
+        query: &RayQuery,
+        scratch: &mut Scratch,
+        counters: &mut Counters,
+    ) -> Hit {
+        let Some(line) = self.line(query, false) else {
             return Hit::MISS;
         };
         let mut best: Option<Interface> = None;
@@ -237,27 +242,30 @@ impl World {
         blocked.clear();
         counters.rays += queries.len() as u64;
         self.scratch.with(|scratch| {
+            let stops = |face| self.blocks(face);
             blocked.extend(
                 queries
                     .iter()
-                    .map(|query| self.occluded_one(query, scratch, counters)),
+                    .map(|query| self.meets_any(query, &stops, scratch, counters)),
             );
         });
     }
 
-    fn occluded_one(
+    /// Whether any of the faces that count lies on the ray.
+    pub(crate) fn meets_any(
         &self,
         query: &RayQuery,
+        counts: &impl Fn(FaceId) -> bool,
         scratch: &mut Scratch,
         counters: &mut Counters,
     ) -> bool {
-        let Some(line) = Line::new(query, &self.place) else {
+        let Some(line) = self.line(query, false) else {
             return false;
         };
         let found = Cell::new(false);
         // Returns the parameter beyond which nothing matters any more.
         let visit = |s: f64, face: FaceId| {
-            found.set(found.get() || (s < line.end && self.blocks(face)));
+            found.set(found.get() || (s < line.end && counts(face)));
             if found.get() {
                 f64::NEG_INFINITY
             } else {
@@ -297,40 +305,54 @@ impl World {
     ) {
         hits.clear();
         counters.rays += 1;
-        let Some(mut line) = Line::new(query, &self.place) else {
-            return;
-        };
-        if whole_line {
-            line = line.whole();
+        if let Some(line) = self.line(query, whole_line) {
+            self.scratch
+                .with(|scratch| self.add_crossings(&line, scratch, hits, counters));
         }
+    }
+
+    /// Adds the boundaries that are seen on a line to what is there.
+    pub(crate) fn add_crossings(
+        &self,
+        line: &Line,
+        scratch: &mut Scratch,
+        hits: &mut Vec<Hit>,
+        counters: &mut Counters,
+    ) {
         let mut found: Vec<Interface> = Vec::new();
-        self.scratch.with(|scratch| {
-            self.solids
-                .sweep_line(&line, f64::INFINITY, scratch, counters, |change| {
-                    found.extend(change.interface());
-                    f64::INFINITY
-                });
-            let first_sheet = found.len();
-            self.sheets
-                .visit_line(&line, f64::INFINITY, counters, |hit| {
-                    found.push(Interface::of_sheet(hit));
-                    f64::INFINITY
-                });
-            for sheet in &mut found[first_sheet..] {
-                let region = self.solids.region_at(&line, sheet.s, scratch, counters);
-                (sheet.from, sheet.to) = (region, region);
-            }
-        });
+        self.solids
+            .sweep_line(line, f64::INFINITY, scratch, counters, |change| {
+                found.extend(change.interface());
+                f64::INFINITY
+            });
+        let first_sheet = found.len();
+        self.sheets
+            .visit_line(line, f64::INFINITY, counters, |hit| {
+                found.push(Interface::of_sheet(hit));
+                f64::INFINITY
+            });
+        for sheet in &mut found[first_sheet..] {
+            let region = self.solids.region_at(line, sheet.s, scratch, counters);
+            (sheet.from, sheet.to) = (region, region);
+        }
         found.retain(|f| f.s < line.end);
         found.sort_by(|a, b| a.s.total_cmp(&b.s).then(a.face.cmp(&b.face)));
         // Cells overlap a little: what lies there was found twice.
         found.dedup_by_key(|f| (f.s, f.face));
-        hits.extend(found.into_iter().map(|f| f.into_hit(&line)));
+        hits.extend(found.into_iter().map(|f| f.into_hit(line)));
     }
 
-    /// A line through the same space as the query's, for what needs another look at it.
-    pub(crate) fn line(&self, query: &RayQuery) -> Option<Line> {
-        Line::new(query, &self.place)
+    /// The query's line in the coordinates of the scene, `None` for a ray that meets nothing because
+    /// it is none.
+    pub(crate) fn line(&self, query: &RayQuery, whole: bool) -> Option<Line> {
+        let line = Line::new(query, &self.place)?;
+        Some(if whole { line.whole() } else { line })
+    }
+
+    /// Whether the ray is one: finite, with a direction. Others meet nothing.
+    #[must_use]
+    pub fn is_ray(&self, query: &RayQuery) -> bool {
+        self.line(query, false).is_some()
     }
 }
 

@@ -3,6 +3,7 @@
 mod cells;
 mod interact;
 mod leaf;
+mod numbering;
 mod prepare;
 mod roots;
 mod sweep;

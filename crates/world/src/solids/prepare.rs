@@ -260,6 +260,7 @@ fn mesh_surfaces(
             let object = ranked[face_owner[literal as usize] as usize].object;
             (scene.objects()[object.0 as usize].name.clone(), error)
         })?;
+        let solid = solid.with_planes(operand.planes.clone());
         let triangles = solid.triangle_count();
         meshes.push(MeshSurface {
             solid,

@@ -6,7 +6,7 @@ use std::ops::Range;
 use super::Solids;
 use super::sweep::Event;
 use crate::Counters;
-use crate::chords::ChordScratch;
+use crate::chords::{Chord, ChordScratch};
 use crate::line::Line;
 use octray_geometry::FaceId;
 use octray_tree::{WalkCost, WalkStack};
@@ -69,6 +69,8 @@ pub(crate) struct Scratch {
     pub(super) inside_after: Vec<bool>,
     pub(super) stack: WalkStack,
     pub(crate) chords: ChordScratch,
+    /// Chords that are only counted.
+    pub(crate) counted: Vec<Chord>,
     mesh_roots: Vec<octray_geometry::mesh::MeshCrossing>,
 }
 
@@ -97,6 +99,7 @@ impl Solids {
     ) -> Slot {
         let index = surface as usize;
         if scratch.slots[index].stamp != scratch.stamp {
+            let departed_at = self.departed_at(surface, line, scratch, counters);
             let start = scratch.roots.len();
             let starts_negative = match self.surfaces.get(index) {
                 Some(surface) => {
@@ -116,7 +119,11 @@ impl Solids {
                     false
                 }
             };
-            let first = self.first_ahead(surface, line, starts_negative, &scratch.roots[start..]);
+            let roots = &scratch.roots[start..];
+            let mut first = self.first_ahead(surface, line, starts_negative, roots);
+            if departed_at.is_some_and(|s| roots.get(first).is_some_and(|root| root.s == s)) {
+                first += 1;
+            }
             scratch.slots[index] = Slot {
                 stamp: scratch.stamp,
                 start: start as u32,
@@ -126,6 +133,33 @@ impl Solids {
             };
         }
         scratch.slots[index]
+    }
+
+    /// Where the line crosses the surface that it departs from, if that or `surface` is a mesh.
+    ///
+    /// A mesh and another surface may coincide without being one: the crossings at one parameter
+    /// are passed together.
+    fn departed_at(
+        &self,
+        surface: u32,
+        line: &Line,
+        scratch: &mut Scratch,
+        counters: &mut Counters,
+    ) -> Option<f64> {
+        if self.meshes.is_empty() {
+            return None;
+        }
+        let (departed, ..) = self.departed_surface(line)?;
+        let is_mesh = |surface: u32| surface as usize >= self.surfaces.len();
+        if departed == surface || !(is_mesh(departed) || is_mesh(surface)) {
+            return None;
+        }
+        let slot = self.roots(departed, line, scratch, counters);
+        let last_passed = slot.first.checked_sub(1)?;
+        scratch
+            .roots
+            .get((slot.start + last_passed) as usize)
+            .map(|root| root.s)
     }
 
     /// How many of the roots lie behind the start of the ray.
