@@ -5,11 +5,12 @@ use std::ops::Range;
 
 use super::Solids;
 use super::sweep::Event;
+use super::volumes::VolumeHits;
 use crate::Counters;
 use crate::chords::{Chord, ChordScratch};
 use crate::line::Line;
 use octray_geometry::FaceId;
-use octray_tree::{WalkCost, WalkStack};
+use octray_tree::{WalkCost, WalkMemory};
 
 /// A crossing of a surface, in the line's parameter.
 #[derive(Clone, Copy, Debug)]
@@ -67,7 +68,8 @@ pub(crate) struct Scratch {
     pub(super) events: Vec<Event>,
     pub(super) inside: Vec<bool>,
     pub(super) inside_after: Vec<bool>,
-    pub(super) stack: WalkStack,
+    pub(super) walk: WalkMemory,
+    pub(super) volume_hits: VolumeHits,
     pub(crate) chords: ChordScratch,
     /// Chords that are only counted.
     pub(crate) counted: Vec<Chord>,
