@@ -23,6 +23,7 @@ use campaign::Campaign;
 use check::{Tally, check};
 use draw::Draw;
 use generator::{Family, Rays, aim};
+use model::Case;
 use oracle::Sight;
 use shrink::shrink;
 use text::{parse, read_case, write_case};
@@ -136,7 +137,8 @@ fn rounded_answers_are_exact_where_they_are_given() {
     let (mut given, mut asked) = (0, 0);
     for index in 0..150 {
         let mut draw = Draw::new(11, index);
-        let Some(subject) = generator::scene(&mut draw).prepare() else {
+        let model = generator::scene(&mut draw);
+        let Some(subject) = model.prepare() else {
             continue;
         };
         let rays = Rays::new(&subject.oracle);
@@ -155,9 +157,15 @@ fn rounded_answers_are_exact_where_they_are_given() {
                 for (answer, exact) in answers.iter().zip(&exact) {
                     asked += 1;
                     given += u32::from(answer.is_some());
+                    let agree = answer.is_none() || exact.is_none() || answer == exact;
+                    let case = Case {
+                        model: model.clone(),
+                        ray,
+                    };
                     assert!(
-                        answer.is_none() || answer == exact,
-                        "scene {index}, t = {t:?}"
+                        agree,
+                        "t = {t:?}: {answer:?} {exact:?} {}",
+                        write_case(&case)
                     );
                 }
             }

@@ -61,6 +61,9 @@ fn is_valid(solid: &Solid) -> bool {
             }
             Primitive::Torus { major, minor } => Solid::torus(*major, *minor).is_ok(),
             Primitive::HalfSpace { normal, .. } => (normal.length() - 1.0).abs() < 1e-15,
+            Primitive::Superellipsoid { exponents: [e, n] } => {
+                e.max(*n) <= 2.0 && Solid::superellipsoid(*e, *n).is_ok()
+            }
             _ => true,
         },
         SolidNode::Transformed {
@@ -106,7 +109,9 @@ fn variants(term: &Term, numbers: bool) -> Vec<Term> {
                 all.push(Term::List(fewer));
             }
             // The count of a polyhedron's planes must stay what it is.
-            for index in (1..terms.len()).filter(|_| head != "convex") {
+            for index in
+                (1..terms.len()).filter(|_| !matches!(head, "convex" | "quadric" | "polynomial"))
+            {
                 for variant in variants(&terms[index], numbers) {
                     let mut changed = terms.clone();
                     changed[index] = variant;

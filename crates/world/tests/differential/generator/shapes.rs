@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use octray_geometry::{ConvexPolyhedron, Solid};
+use octray_geometry::{ConvexPolyhedron, Polynomial, ShapeError, Solid};
 use octray_math::DVec3;
 
 use super::Lattice;
@@ -10,7 +10,7 @@ use crate::draw::Draw;
 
 /// A primitive in its own frame.
 pub(super) fn primitive(draw: &mut Draw, lattice: Lattice) -> Solid {
-    let kind = draw.weighted(&[4, 6, 4, 1, 4, 3, 2, 2]);
+    let kind = draw.weighted(&[8, 12, 8, 2, 8, 6, 4, 4, 3, 1, 2]);
     loop {
         let made = match kind {
             0 => Solid::sphere(lattice.length(draw)),
@@ -34,7 +34,13 @@ pub(super) fn primitive(draw: &mut Draw, lattice: Lattice) -> Solid {
                 let normal = direction(draw);
                 Solid::half_space(normal, lattice.coordinate(draw))
             }
-            _ => convex(draw, lattice),
+            7 => convex(draw, lattice),
+            8 => quadric(draw),
+            9 => quartic(draw),
+            _ => {
+                let exponents = [0.1, 0.5, 0.8, 1.0, 1.5, 2.0];
+                Solid::superellipsoid(draw.pick(&exponents), draw.pick(&exponents))
+            }
         };
         // Nudged numbers may leave an edge without length: then once more.
         if let Ok(solid) = made {
@@ -63,7 +69,7 @@ fn direction(draw: &mut Draw) -> DVec3 {
 
 /// Mostly parts of a few cones, so that mantles coincide: radius `k step` at height 0, changing by
 /// `slope` per height, cut at heights of the lattice.
-fn cone(draw: &mut Draw, lattice: Lattice) -> Result<Solid, octray_geometry::ShapeError> {
+fn cone(draw: &mut Draw, lattice: Lattice) -> Result<Solid, ShapeError> {
     if draw.chance(0.3) {
         let z = lattice.coordinate(draw);
         let ends = [lattice.length(draw), lattice.length(draw)];
@@ -81,7 +87,7 @@ fn cone(draw: &mut Draw, lattice: Lattice) -> Result<Solid, octray_geometry::Sha
 }
 
 /// A prism or pyramid over a polygon of the lattice.
-fn convex(draw: &mut Draw, lattice: Lattice) -> Result<Solid, octray_geometry::ShapeError> {
+fn convex(draw: &mut Draw, lattice: Lattice) -> Result<Solid, ShapeError> {
     let step = lattice.step;
     let outline: &[[f64; 2]] = draw.pick(&[
         &[[0.0, 0.0], [2.0, 0.0], [0.0, 2.0]][..],
@@ -104,4 +110,29 @@ fn convex(draw: &mut Draw, lattice: Lattice) -> Result<Solid, octray_geometry::S
     }
     let polyhedron = ConvexPolyhedron::from_faces(vertices, &faces)?;
     Ok(Solid::convex(Arc::new(polyhedron)))
+}
+
+/// Any quadric with small coefficients, most of them 0.
+fn quadric(draw: &mut Draw) -> Result<Solid, ShapeError> {
+    let coefficients = std::array::from_fn(|i| {
+        let often = if i < 3 { 0.8 } else { 0.2 };
+        if draw.chance(often) {
+            0.5 * f64::from(draw.whole(-2, 2))
+        } else {
+            0.0
+        }
+    });
+    Solid::quadric(coefficients)
+}
+
+/// A cubic or quartic with small coefficients, most of them 0.
+fn quartic(draw: &mut Draw) -> Result<Solid, ShapeError> {
+    let (degree, count) = draw.pick(&[(3, 20), (4, 35), (4, 35)]);
+    let coefficients: Vec<f64> = (0..count)
+        .map(|_| match draw.weighted(&[4, 1]) {
+            0 => 0.0,
+            _ => f64::from(draw.whole(-2, 2)),
+        })
+        .collect();
+    Solid::polynomial(Polynomial::new(degree, &coefficients)?)
 }

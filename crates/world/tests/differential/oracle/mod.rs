@@ -8,6 +8,7 @@
 mod clearance;
 mod exact;
 mod frame;
+mod implicit;
 mod number;
 mod proposals;
 mod sight;
