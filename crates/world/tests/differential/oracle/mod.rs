@@ -149,6 +149,12 @@ impl Oracle {
         self.scene.size
     }
 
+    /// How unevenly space is stretched for a primitive, at most.
+    pub(crate) fn worst_condition(&self) -> f64 {
+        let leaves = self.leaves.iter();
+        leaves.fold(1.0, |worst, leaf| leaf.frame.condition.max(worst))
+    }
+
     /// The primitives, each with where it is, rounded.
     pub(crate) fn primitives(&self) -> impl Iterator<Item = (&Primitive, DAffine3)> {
         let leaves = self.leaves.iter();
