@@ -5,11 +5,14 @@ use octray_math::transform;
 
 use crate::check::{Tally, Wrong, check};
 use crate::model::Case;
-use crate::text::{Term, parse, read_case, write_case};
+use crate::text::{Term, UNWRITTEN, parse, read_case, write_case};
 
 /// The smallest case that could be found, with the same kind of disagreement.
 pub(crate) fn shrink(case: &Case, wrong: Wrong) -> Case {
     let mut best = write_case(case);
+    if best.contains(UNWRITTEN) {
+        return case.clone();
+    }
     let mut budget = 4000_u32;
     loop {
         let term = parse(&best);

@@ -28,6 +28,9 @@ const FORMS: [QuadricForm; 7] = [
     QuadricForm::ParabolicCylinder,
 ];
 
+/// Stands for a primitive that has no text.
+pub(crate) const UNWRITTEN: &str = "unwritten";
+
 fn numbers(out: &mut String, values: impl IntoIterator<Item = f64>) {
     for value in values {
         write!(out, " {value:?}").expect("a string takes all");
@@ -97,6 +100,8 @@ fn write_primitive(out: &mut String, primitive: &Primitive) {
             numbers(out, polynomial.coefficients().iter().copied());
         }
         Primitive::Superellipsoid { exponents } => put("superellipsoid", exponents),
+        // Made from outlines that it does not keep: to be found again by its seed.
+        Primitive::Composite(_) => out.push_str(UNWRITTEN),
         other => panic!("no text for {other:?}"),
     }
 }
