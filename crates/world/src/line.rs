@@ -1,7 +1,8 @@
 //! Rays as the structures see them: moved and scaled so that rounding stays small.
 
-use octray_geometry::SceneFrame;
-use octray_math::{Aabb, DVec3, Ray};
+use octray_geometry::{SceneFrame, Sheet, finite_box};
+use octray_math::{DVec3, Ray};
+use octray_scene::{Scene, Shape};
 
 use crate::{Departure, RayQuery};
 
@@ -16,9 +17,20 @@ pub(crate) struct Place {
 }
 
 impl Place {
-    /// Of the bounded objects in this box, which may be empty.
-    pub(crate) fn new(bounds: &Aabb) -> Self {
-        let frame = SceneFrame::new(bounds);
+    /// Of a scene.
+    pub(crate) fn new(scene: &Scene) -> Self {
+        let solids = scene.objects().iter().flat_map(|object| {
+            let solids = match &object.shape {
+                Shape::Solid(solid) => [Some(solid), None],
+                Shape::Sheet(Sheet::Shell { solid, clip }) => [Some(solid), Some(clip)],
+                Shape::Sheet(Sheet::Mesh { .. }) => [None, None],
+            };
+            let bounds = object.shape.bounds();
+            let unbounded = !bounds.is_empty() && !bounds.is_bounded();
+            solids.into_iter().flatten().filter(move |_| unbounded)
+        });
+        let bounds = finite_box(scene.bounds(), solids);
+        let frame = SceneFrame::new(&bounds);
         let center = if bounds.is_empty() || !bounds.is_bounded() {
             DVec3::ZERO
         } else {
