@@ -15,7 +15,7 @@ pub mod surface;
 
 pub use frame::SceneFrame;
 pub use identity::{FaceId, MaterialId, SurfaceId};
-pub use mesh::{CornerAttribute, MeshError, TriangleMesh};
+pub use mesh::{CornerAttribute, MeshError, MeshRule, TriangleMesh};
 pub use primitive::{ConvexPolyhedron, Primitive, ShapeError};
 pub use sheet::Sheet;
 pub use solid::{MAX_NESTING, MAX_OPERANDS, Solid, SolidNode};

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use octray_math::{Aabb, DAffine3, DVec3, transform};
 
 use crate::MaterialId;
-use crate::mesh::TriangleMesh;
+use crate::mesh::{MeshRule, TriangleMesh};
 use crate::primitive::{ConvexPolyhedron, Primitive, ShapeError};
 
 /// An immutable CSG tree, shared on clone.
@@ -305,12 +305,13 @@ impl Solid {
         Self::primitive(Primitive::Convex(polyhedron))
     }
 
-    /// The inside of a closed mesh.
+    /// The inside of a closed mesh: where its winding number is not 0.
     ///
     /// # Errors
-    /// The mesh is empty, open, non-manifold or not consistently oriented.
-    pub fn mesh(mesh: Arc<TriangleMesh>) -> Result<Self, ShapeError> {
-        mesh.check_closed()?;
+    /// The mesh does not comply with `rule` ([`TriangleMesh::check_solid`]): the error says what is
+    /// wrong and where.
+    pub fn mesh(mesh: Arc<TriangleMesh>, rule: MeshRule) -> Result<Self, ShapeError> {
+        mesh.check_solid(rule)?;
         Ok(Self::primitive(Primitive::Mesh(mesh)))
     }
 

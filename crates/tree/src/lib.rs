@@ -6,6 +6,9 @@
 //! [`WideTree`] finds the items whose boxes a line meets, front to back, eight boxes at a time.
 
 pub mod cell_tree;
+pub mod encoding;
+pub mod traversal;
+pub mod triangle_cube;
 pub mod wide_tree;
 
 pub use cell_tree::{Cell, CellTree, CellTreeStats, Criteria, Node, Subdivide, WalkStack};

@@ -1,14 +1,16 @@
 //! Triangle meshes: storage, validation, and where lines cross them.
 
-mod closed;
+mod boundary;
 mod exact_cross;
 mod intersect;
 mod placement;
+mod position_ids;
 mod solid;
 mod triangle_mesh;
 mod triangle_tree;
 mod volume;
 
+pub use boundary::{Flaw, FlawKind, MeshReport, MeshRule};
 pub use intersect::{MeshCrossing, TriangleHit, TriangleRay};
 pub use placement::{Placement, TrianglePoint};
 pub use solid::MeshSolid;

@@ -128,6 +128,18 @@ pub fn moved(mesh: &TriangleMesh, to: impl Fn(DVec3) -> DVec3) -> TriangleMesh {
     TriangleMesh::new(positions, mesh.triangles().to_vec()).unwrap()
 }
 
+/// All triangles of both.
+pub fn together(a: &TriangleMesh, b: &TriangleMesh) -> TriangleMesh {
+    let first = a.positions().len() as u32;
+    let positions = [a.positions(), b.positions()].concat();
+    let moved = b.triangles().iter().map(|t| t.map(|i| i + first));
+    TriangleMesh::new(
+        positions,
+        a.triangles().iter().copied().chain(moved).collect(),
+    )
+    .unwrap()
+}
+
 /// Closed meshes of all kinds: round, flat, thin, tiny, huge, off centre, rough.
 pub fn zoo() -> Vec<(&'static str, TriangleMesh)> {
     let turned = DMat3::from_rotation_x(0.7) * DMat3::from_rotation_z(0.4);
