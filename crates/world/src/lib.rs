@@ -10,10 +10,12 @@ mod line;
 mod query;
 mod sheets;
 mod solids;
+mod surfaces;
 mod world;
 
 pub use chords::{Chord, ChordEnd, Overlaps};
 pub use query::{Counters, Departure, Hit, RayQuery, Region, SurfaceHit};
+pub use surfaces::{NearCoincidence, SurfaceReport};
 pub use world::{Accel, World, WorldConfig, WorldError, WorldStats};
 
 pub use octray_tree::{CellTreeStats, Criteria, WideTreeConfig, WideTreeError, WideTreeStats};

@@ -7,6 +7,7 @@
 mod cone;
 mod fingerprint;
 mod local_box;
+mod near;
 mod plane;
 mod round;
 mod table;
@@ -18,6 +19,7 @@ use octray_math::roots::SignChanges;
 use octray_math::{Aabb, DAffine3, DVec3, Ray};
 
 use local_box::LocalBox;
+pub use near::{NEAR, NearPair};
 pub(crate) use table::points_upward;
 pub use table::{PLACE_TOLERANCE, SURFACE_TOLERANCE, SurfaceTable};
 #[cfg(test)]
