@@ -1,14 +1,15 @@
 # Types of the compiled module; its docstrings are in the module itself.
 
 import os
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from typing import Any, Literal, Protocol, SupportsIndex, TypeAlias, final
 
 import numpy as np
 import numpy.typing as npt
 from typing_extensions import Unpack, disjoint_base
 
-from octray._options import Accel, MeshRule, RenderOptions, View
+from octray._options import Accel, MeshRule, Overlaps, RenderOptions, View
+from octray.ray import RayIntersector
 
 __all__ = [
     "Camera",
@@ -16,6 +17,7 @@ __all__ = [
     "DirectionalLight",
     "Hits",
     "Image",
+    "Intersections",
     "Light",
     "Material",
     "PointLight",
@@ -265,7 +267,42 @@ class Hits:
     def position(self) -> _Floats: ...
     @property
     def hit(self) -> _Booleans: ...
+    @property
+    def invalid_rays(self) -> int: ...
+    def to_open3d(self) -> dict[str, npt.NDArray[Any]]: ...
     def __len__(self) -> int: ...
+
+@final
+class Intersections:
+    @property
+    def offsets(self) -> _Integers: ...
+    @property
+    def counts(self) -> _Integers: ...
+    @property
+    def ray_id(self) -> _Integers: ...
+    @property
+    def t_enter(self) -> _Floats: ...
+    @property
+    def t_exit(self) -> _Floats: ...
+    @property
+    def lengths(self) -> _Floats: ...
+    @property
+    def object_id(self) -> _Integers: ...
+    @property
+    def material_id(self) -> _Integers: ...
+    @property
+    def face_enter(self) -> _Integers: ...
+    @property
+    def face_exit(self) -> _Integers: ...
+    @property
+    def normal_enter(self) -> _Floats: ...
+    @property
+    def normal_exit(self) -> _Floats: ...
+    @property
+    def invalid_rays(self) -> int: ...
+    def path_lengths(self, by: Literal["object", "material"] = "object") -> _Floats: ...
+    def __len__(self) -> int: ...
+    def __getitem__(self, key: SupportsIndex | slice, /) -> Intersections: ...
 
 @final
 class Scene:
@@ -302,6 +339,8 @@ class Scene:
     @property
     def names(self) -> list[str]: ...
     @property
+    def material_names(self) -> list[str]: ...
+    @property
     def bounds(self) -> _Bounds | None: ...
     @property
     def diagnostics(self) -> list[Diagnostic]: ...
@@ -317,11 +356,37 @@ class Scene:
         tree_memory: int | None = None,
     ) -> None: ...
     def render(self, **options: Unpack[RenderOptions]) -> Image: ...
+    @property
+    def ray(self) -> RayIntersector: ...
     def cast_rays(
         self, rays: npt.ArrayLike, *, accel: Accel = "auto", threads: int | None = None
     ) -> Hits: ...
+    def list_intersections(
+        self,
+        rays: npt.ArrayLike,
+        *,
+        whole_line: bool = False,
+        overlaps: Overlaps = "regions",
+        accel: Accel = "auto",
+        threads: int | None = None,
+    ) -> Intersections: ...
+    def iter_intersections(
+        self,
+        rays: npt.ArrayLike | Iterator[npt.ArrayLike],
+        *,
+        chunk: int = 65536,
+        whole_line: bool = False,
+        overlaps: Overlaps = "regions",
+        accel: Accel = "auto",
+        threads: int | None = None,
+    ) -> Iterator[Intersections]: ...
     def count_intersections(
-        self, rays: npt.ArrayLike, *, accel: Accel = "auto", threads: int | None = None
+        self,
+        rays: npt.ArrayLike,
+        *,
+        whole_line: bool = False,
+        accel: Accel = "auto",
+        threads: int | None = None,
     ) -> _Integers: ...
     def test_occlusions(
         self,
@@ -331,6 +396,18 @@ class Scene:
         accel: Accel = "auto",
         threads: int | None = None,
     ) -> _Booleans: ...
+    def compute_occupancy(
+        self, points: npt.ArrayLike, *, accel: Accel = "auto", threads: int | None = None
+    ) -> _Booleans: ...
+    def locate(
+        self, points: npt.ArrayLike, *, accel: Accel = "auto", threads: int | None = None
+    ) -> _Integers: ...
+    def _crossings(
+        self, rays: npt.ArrayLike, limit: int | None = None
+    ) -> tuple[_Integers, _Integers, _Floats]: ...
+    def _count_invalid_rays(
+        self, rays: npt.ArrayLike, *, accel: Accel = "auto", threads: int | None = None
+    ) -> int: ...
     def __len__(self) -> int: ...
 
 def load(path: _Path, *, facets: bool = False) -> Scene: ...

@@ -17,7 +17,7 @@ use crate::image::Image;
 use crate::light::Light;
 use crate::mesh;
 use crate::objects::Common;
-use crate::queries::{self, Hits};
+use crate::queries::{self, Crossings, Hits, Intersections};
 use crate::render::{self, Request};
 use crate::solid::Solid;
 use crate::world::{Prepared, completed, configured, prepare};
@@ -226,6 +226,13 @@ impl Scene {
         objects.iter().map(|o| o.name.as_str()).collect()
     }
 
+    /// The names of the materials; a material's id is an index into it.
+    #[getter]
+    fn material_names(&self) -> Vec<&str> {
+        let materials = self.builder.so_far().materials();
+        materials.iter().map(|m| m.name.as_str()).collect()
+    }
+
     /// The box around all bounded objects as (lowest corner, highest corner), or `None`.
     #[getter]
     fn bounds(&self) -> Option<(Triple, Triple)> {
@@ -305,18 +312,71 @@ impl Scene {
         queries::cast_rays(slf, rays, (accel, threads))
     }
 
-    /// How many boundaries each ray crosses at t > 0, entries and exits each one, int64.
-    #[pyo3(signature = (rays, *, accel = "auto", threads = None))]
+    /// Every interval of every ray of an array (..., 6) inside every solid, ordered by ray and then by
+    /// where it begins. Sheets have no inside and no intervals. A ray that starts inside has an
+    /// interval from t = 0, one that never leaves ends at infinity; with `whole_line` t counts from
+    /// -inf. A ray with NaN or without direction has no interval.
+    ///
+    /// Where solids overlap, `overlaps` says whose intervals count: "regions", of the one solid that
+    /// a point belongs to (higher priority, then the smaller solid, then the later one), so that
+    /// intervals never overlap; "priorities", of the solids of highest priority; "objects", of every
+    /// solid as if it were alone.
+    #[pyo3(signature = (
+        rays, *, whole_line = false, overlaps = "regions", accel = "auto", threads = None
+    ))]
+    fn list_intersections(
+        slf: &Bound<'_, Self>,
+        rays: &Bound<'_, PyAny>,
+        whole_line: bool,
+        overlaps: &str,
+        accel: &str,
+        threads: Option<usize>,
+    ) -> PyResult<Intersections> {
+        queries::list_intersections(slf, rays, whole_line, overlaps, (accel, threads))
+    }
+
+    /// `list_intersections` for more rays than memory holds: yields the `Intersections` of at most
+    /// `chunk` rays at a time. `rays` is an array (N, 6), which may be a memory-mapped file, or an
+    /// iterator of such arrays.
+    #[pyo3(signature = (
+        rays, *, chunk = 65536, whole_line = false, overlaps = "regions", accel = "auto",
+        threads = None
+    ))]
+    fn iter_intersections<'py>(
+        slf: &Bound<'py, Self>,
+        rays: &Bound<'py, PyAny>,
+        chunk: isize,
+        whole_line: bool,
+        overlaps: &str,
+        accel: &str,
+        threads: Option<usize>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let py = slf.py();
+        let options = PyDict::new(py);
+        options.set_item("whole_line", whole_line)?;
+        options.set_item("overlaps", overlaps)?;
+        options.set_item("accel", accel)?;
+        options.set_item("threads", threads)?;
+        let module = py.import("octray._chunks")?;
+        module.call_method1("iter_intersections", (slf, rays, chunk, options))
+    }
+
+    /// How many boundaries each ray of an array (..., 6) crosses at t > 0, or with `whole_line` at any
+    /// t: each entry into a solid, each exit from one, and each sheet. Two solids that touch count
+    /// as two. int64, the rays' leading axes.
+    #[pyo3(signature = (rays, *, whole_line = false, accel = "auto", threads = None))]
     fn count_intersections<'py>(
         slf: &Bound<'py, Self>,
         rays: &Bound<'py, PyAny>,
+        whole_line: bool,
         accel: &str,
         threads: Option<usize>,
     ) -> PyResult<Bound<'py, PyArrayDyn<i64>>> {
-        queries::count_intersections(slf, rays, (accel, threads))
+        queries::count_intersections(slf, rays, whole_line, (accel, threads))
     }
 
-    /// Whether each ray meets anything at 0 < t < tfar.
+    /// Whether each ray of an array (..., 6) meets any surface, transparent or not, at 0 < t < tfar.
+    /// bool, the rays' leading axes.
     #[pyo3(signature = (rays, *, tfar = f64::INFINITY, accel = "auto", threads = None))]
     fn test_occlusions<'py>(
         slf: &Bound<'py, Self>,
@@ -326,6 +386,58 @@ impl Scene {
         threads: Option<usize>,
     ) -> PyResult<Bound<'py, PyArrayDyn<bool>>> {
         queries::test_occlusions(slf, rays, tfar, (accel, threads))
+    }
+
+    /// Whether each point of an array (..., 3) lies in a solid: bool, the points' leading axes. On a
+    /// boundary it is decided for one of the sides. A point with NaN is outside.
+    #[pyo3(signature = (points, *, accel = "auto", threads = None))]
+    fn compute_occupancy<'py>(
+        slf: &Bound<'py, Self>,
+        points: &Bound<'py, PyAny>,
+        accel: &str,
+        threads: Option<usize>,
+    ) -> PyResult<Bound<'py, PyArrayDyn<bool>>> {
+        queries::compute_occupancy(slf, points, (accel, threads))
+    }
+
+    /// The solid that each point of an array (..., 3) belongs to, -1 outside: int64, the points' leading
+    /// axes. Of several solids it is the one of higher priority, then the smaller, then the later.
+    #[pyo3(signature = (points, *, accel = "auto", threads = None))]
+    fn locate<'py>(
+        slf: &Bound<'py, Self>,
+        points: &Bound<'py, PyAny>,
+        accel: &str,
+        threads: Option<usize>,
+    ) -> PyResult<Bound<'py, PyArrayDyn<i64>>> {
+        queries::locate(slf, points, (accel, threads))
+    }
+
+    /// The same questions under the names that trimesh gives them.
+    #[getter]
+    fn ray<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
+        let module = slf.py().import("octray.ray")?;
+        module.call_method1("RayIntersector", (slf,))
+    }
+
+    /// For `octray.ray`: ray, number of the face, and t of the first `limit` surfaces on each ray.
+    #[pyo3(signature = (rays, limit = None))]
+    fn _crossings<'py>(
+        slf: &Bound<'py, Self>,
+        rays: &Bound<'py, PyAny>,
+        limit: Option<usize>,
+    ) -> PyResult<Crossings<'py>> {
+        queries::crossings(slf, rays, limit, ("auto", None))
+    }
+
+    /// For the command line: how many of the rays are none.
+    #[pyo3(signature = (rays, *, accel = "auto", threads = None))]
+    fn _count_invalid_rays(
+        slf: &Bound<'_, Self>,
+        rays: &Bound<'_, PyAny>,
+        accel: &str,
+        threads: Option<usize>,
+    ) -> PyResult<usize> {
+        queries::count_invalid_rays(slf, rays, (accel, threads))
     }
 
     /// Everything in the scene as plain dictionaries, lists and numbers, ready for JSON.

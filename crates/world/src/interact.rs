@@ -51,7 +51,7 @@ impl World {
     pub fn interact(&self, query: &RayQuery, hit: &Hit) -> SurfaceHit {
         let position = query.ray.at(hit.t);
         let (object, material) = self.owner(hit.face).unwrap_or((ObjectId(0), MaterialId(0)));
-        let line = self.line(query);
+        let line = self.line(query, false);
         let triangle = line
             .as_ref()
             .and_then(|line| self.sheets.point(line, hit.face));

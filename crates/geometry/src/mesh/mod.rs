@@ -2,6 +2,7 @@
 
 mod boundary;
 mod exact_cross;
+mod facets;
 mod intersect;
 mod placement;
 mod position_ids;
@@ -11,6 +12,7 @@ mod triangle_tree;
 mod volume;
 
 pub use boundary::{Flaw, FlawKind, MeshReport, MeshRule};
+pub use facets::FacetPlanes;
 pub use intersect::{MeshCrossing, TriangleHit, TriangleRay};
 pub use placement::{Placement, TrianglePoint};
 pub use solid::MeshSolid;

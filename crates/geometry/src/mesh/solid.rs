@@ -5,7 +5,9 @@ use std::sync::Arc;
 use octray_math::{Aabb, DAffine3, DVec3, Interval, Ray};
 use octray_tree::{WalkCost, WideTreeConfig};
 
-use super::{MeshCrossing, MeshError, Placement, TriangleMesh, TrianglePoint, TriangleTree};
+use super::{
+    FacetPlanes, MeshCrossing, MeshError, Placement, TriangleMesh, TrianglePoint, TriangleTree,
+};
 use crate::MaterialId;
 use crate::surface::Side;
 
@@ -19,6 +21,7 @@ pub struct MeshSolid {
     mesh: Arc<TriangleMesh>,
     placement: Placement,
     triangles: TriangleTree,
+    planes: FacetPlanes,
 }
 
 impl MeshSolid {
@@ -40,7 +43,15 @@ impl MeshSolid {
             mesh: Arc::clone(mesh),
             placement,
             triangles,
+            planes: FacetPlanes::default(),
         })
+    }
+
+    /// The same with triangles in planes that they share with other operands.
+    #[must_use]
+    pub fn with_planes(mut self, planes: FacetPlanes) -> Self {
+        self.planes = planes;
+        self
     }
 
     /// How many triangles it has.
@@ -70,8 +81,9 @@ impl MeshSolid {
         let start = out.len();
         self.triangles
             .all(ray, Interval::ALL, cost, |triangle, hit| {
+                let bounds = || self.triangles.bounds(triangle);
                 out.push(MeshCrossing {
-                    t: hit.t,
+                    t: self.planes.parameter(ray, triangle, hit, bounds),
                     triangle,
                     entering: hit.entering,
                 });

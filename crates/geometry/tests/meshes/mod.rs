@@ -217,3 +217,22 @@ pub fn nasty_ray(mesh: &TriangleMesh, random: &mut Random) -> Ray {
     };
     Ray::new(origin, direction)
 }
+
+/// Every triangle cut into four, `levels` times; vertices are not shared.
+pub fn divided(mesh: &TriangleMesh, levels: u32) -> TriangleMesh {
+    let mut positions = mesh.positions().to_vec();
+    let mut triangles = mesh.triangles().to_vec();
+    for _ in 0..levels {
+        let mut next = Vec::with_capacity(4 * triangles.len());
+        for [a, b, c] in triangles {
+            let mut middle = |i: u32, j: u32| {
+                positions.push((positions[i as usize] + positions[j as usize]) * 0.5);
+                positions.len() as u32 - 1
+            };
+            let (ab, bc, ca) = (middle(a, b), middle(b, c), middle(c, a));
+            next.extend([[a, ab, ca], [b, bc, ab], [c, ca, bc], [ab, bc, ca]]);
+        }
+        triangles = next;
+    }
+    TriangleMesh::new(positions, triangles).unwrap()
+}

@@ -106,6 +106,11 @@ impl CellTree {
         Node::decode(self.blocks[block as usize][octant as usize])
     }
 
+    /// Bytes of the nodes alone.
+    pub(crate) fn node_bytes(&self) -> u64 {
+        size_of_val(self.blocks.as_slice()) as u64
+    }
+
     /// Figures about the tree.
     #[must_use]
     pub const fn stats(&self) -> &CellTreeStats {

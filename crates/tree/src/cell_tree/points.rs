@@ -5,7 +5,7 @@ use octray_math::{Aabb, DVec3};
 use super::{Cell, CellTree, Criteria, Subdivide, enclosing_cube};
 
 /// Points as contents: a cell holds the points in it.
-struct Points;
+pub(crate) struct Points;
 
 impl Subdivide for Points {
     type Content = Vec<DVec3>;

@@ -20,7 +20,7 @@
 //!   emptiness reaches.
 //! * A table size that is a power of two keeps only the low bits of `i`; see [`TableSize`].
 
-use octray_math::CellKey;
+use octray_math::{Aabb, CellKey, DVec3};
 
 use crate::cell_tree::{CellTree, Node};
 
@@ -188,6 +188,26 @@ impl Lvsi {
         Found::Nothing
     }
 
+    /// The leaf at a point of the cube `root`, `None` if none is stored there.
+    #[must_use]
+    pub fn locate(&self, root: &Aabb, point: DVec3) -> Option<Node> {
+        let unit = CellKey::containing(root, self.depth, point)?;
+        match self.leaf_parent(unit, &mut 0) {
+            Found::Leaf(_, node) => Some(node),
+            Found::Nothing => None,
+        }
+    }
+
+    /// The table as it lies in memory, for hashing and comparing.
+    pub fn words(&self) -> impl Iterator<Item = u32> + '_ {
+        let rows = self.rows.iter().flat_map(|row| {
+            let parent = [row.parent as u32, (row.parent >> 32) as u32];
+            let rest = [row.depth, row.next];
+            parent.into_iter().chain(rest).chain(row.slots)
+        });
+        self.heads.iter().copied().chain(rows)
+    }
+
     /// What the table costs.
     #[must_use]
     pub fn stats(&self) -> LvsiStats {
@@ -222,7 +242,7 @@ fn is_prime(n: u64) -> bool {
 mod tests {
     use super::*;
     use crate::cell_tree::points::tree;
-    use octray_math::{DVec3, MAX_DEPTH};
+    use octray_math::MAX_DEPTH;
     use proptest::prelude::*;
 
     fn point() -> impl Strategy<Value = DVec3> {

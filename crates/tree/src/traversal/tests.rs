@@ -4,9 +4,9 @@ use octray_math::{Aabb, DVec3, Interval, Ray};
 use proptest::prelude::*;
 
 use super::{LeafSearch, Steps, TreePath};
-use crate::cell_tree::points::tree;
+use crate::cell_tree::points::{Points, tree};
 use crate::encoding::{Lvsi, LvsiStore, TableSize};
-use crate::{CellTree, WalkStack};
+use crate::{CellTree, Grid, WalkStack};
 
 type Visits = Vec<(u32, Interval)>;
 type Visit<'a> = &'a mut dyn FnMut(u32, Interval) -> f64;
@@ -47,6 +47,54 @@ fn all_others(tree: &CellTree, ray: &Ray, within: Interval) -> Vec<(&'static str
     results
 }
 
+#[test]
+fn a_grid_is_walked_through_the_voxels_that_the_line_meets() {
+    let box_ = Aabb::new(DVec3::new(-1.0, -1.0, -0.5), DVec3::new(1.0, 1.0, 0.5));
+    let points = [
+        DVec3::new(-0.9, 0.1, 0.1),
+        DVec3::new(0.1, 0.15, 0.1),
+        DVec3::new(0.9, 0.1, 0.1),
+        DVec3::new(0.9, -0.9, 0.4),
+    ];
+    let (grid, contents) = Grid::build(box_, points.to_vec(), &Points, [8, 8, 4]);
+    assert_eq!(grid.occupied(), 4);
+    let along = |origin: DVec3, direction: DVec3| {
+        let mut found = Vec::new();
+        let ray = Ray::new(origin, direction);
+        let steps = grid.walk(&ray, Interval::new(0.0, f64::INFINITY), |leaf, part| {
+            assert!(part.start <= part.end);
+            found.push(contents[leaf as usize][0]);
+            f64::INFINITY
+        });
+        (found, steps.cells)
+    };
+    let there = along(DVec3::new(-9.0, 0.1, 0.1), DVec3::X);
+    assert_eq!(there, (points[..3].to_vec(), 8));
+    let (back, _) = along(DVec3::new(9.0, 0.1, 0.1), DVec3::NEG_X);
+    assert_eq!(back, [points[2], points[1], points[0]]);
+    assert_eq!(along(DVec3::new(0.0, 0.1, 0.1), DVec3::X).0, points[1..3]);
+    assert_eq!(along(DVec3::new(-9.0, 5.0, 0.1), DVec3::X), (vec![], 0));
+    // A diagonal line changes its voxel once per face: 8 + 8 + 4 - 2 voxels, less shared faces.
+    let corner = DVec3::new(-1.0, -1.0, -0.5);
+    let (_, cells) = along(corner * 1.01, -corner + DVec3::new(0.01, 0.02, 0.0));
+    assert!((8..=18).contains(&cells), "{cells}");
+}
+
+#[test]
+fn grid_resolutions_follow_the_shape_and_the_limit() {
+    let long = Aabb::new(DVec3::ZERO, DVec3::new(100.0, 1.0, 1.0));
+    let [i, j, k] = Grid::resolution_for(&long, 1000, 1 << 30);
+    assert!(i > 50 * j && j == k, "{i} {j} {k}");
+    for things in [0, 1, 10, 100_000, u64::MAX / 4] {
+        for limit in [1, 1000, 1 << 20] {
+            let n = Grid::resolution_for(&long, things, limit);
+            assert!(n.iter().map(|n| u64::from(*n)).product::<u64>() <= limit);
+        }
+    }
+    let point = Aabb::new(DVec3::ONE, DVec3::ONE);
+    assert_eq!(Grid::resolution_for(&point, 5, 100), [1; 3]);
+}
+
 fn point() -> impl Strategy<Value = DVec3> {
     let x = || prop_oneof![-1.0..1.0f64, (-4..=4i32).prop_map(|i| f64::from(i) * 0.25)];
     (x(), x(), x()).prop_map(|(x, y, z)| DVec3::new(x, y, z))
@@ -81,6 +129,19 @@ proptest! {
                 prop_assert!(same || covered(part, &found, slack) || grazed(part), "{} misses {}", name, leaf);
             }
             prop_assert!(found.len() as u64 <= steps.cells);
+        }
+        let bounds = Aabb::new(DVec3::splat(-1.0), DVec3::ONE);
+        let (grid, contents) = Grid::build(bounds, points.clone(), &Points, [7, 5, 1 + max_depth]);
+        let mut found: Vec<DVec3> = Vec::new();
+        grid.walk(&ray, within, |leaf, _| {
+            found.extend(&contents[leaf as usize]);
+            f64::INFINITY
+        });
+        // Every point that the line passes closely lies in a voxel that was visited.
+        for p in &points {
+            let s = ray.closest_approach(*p);
+            let near = ray.at(s).distance(*p) < 1e-9;
+            prop_assert!(!near || s < from + 1e-9 || found.contains(p));
         }
     }
 }

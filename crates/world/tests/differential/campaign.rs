@@ -47,22 +47,19 @@ impl Report {
         self
     }
 
-    /// The share of points that cannot be compared.
-    pub(crate) fn undecidable(&self) -> f64 {
-        share(&self.tally)
-    }
-
     /// The figures, one line for all and one for each family of rays.
     pub(crate) fn lines(&self) -> Vec<String> {
         let line = |name: &str, t: &Tally| {
             format!(
-                "{name}: {} rays, {} crossings, {} points, {:.3}% undecidable, {} of {} pieces blind",
+                "{name}: {} rays, {} crossings, {} points ({:.2}% undecidable), {} pieces ({} in faces, {} short, {} blind)",
                 t.rays,
                 t.crossings,
                 t.samples,
                 100.0 * share(t),
-                t.blind,
                 t.pieces,
+                t.in_faces,
+                t.short,
+                t.blind,
             )
         };
         let all = line(&format!("{} scenes", self.scenes), &self.tally);

@@ -1,7 +1,7 @@
 //! The comparison of the engine with the oracle on one ray.
 
 use octray_geometry::surface::SURFACE_TOLERANCE;
-use octray_math::{DVec3, Ray};
+use octray_math::{DVec3, Ray, hash_u64, unit_f64};
 use octray_world::{Chord, Hit, Overlaps, Region};
 
 use crate::model::Subject;
@@ -18,7 +18,11 @@ pub(crate) struct Tally {
     pub(crate) undecidable: u64,
     /// Pieces of lines between crossings.
     pub(crate) pieces: u64,
-    /// Of these, the ones in which no point could be compared.
+    /// Of these, the ones in a face, compared by what lies on its two sides.
+    pub(crate) in_faces: u64,
+    /// The ones no longer than what rounding may do to their ends.
+    pub(crate) short: u64,
+    /// The others in which no point could be compared: they run along boundaries.
     pub(crate) blind: u64,
 }
 
@@ -29,6 +33,8 @@ impl Tally {
         self.samples += other.samples;
         self.undecidable += other.undecidable;
         self.blind += other.blind;
+        self.in_faces += other.in_faces;
+        self.short += other.short;
         self.pieces += other.pieces;
     }
 }
@@ -55,6 +61,7 @@ pub(crate) struct Disagreement {
     pub(crate) details: String,
 }
 
+/// A disagreement.
 fn disagree(wrong: Wrong, details: String) -> Result<(), Disagreement> {
     Err(Disagreement { wrong, details })
 }
@@ -78,7 +85,7 @@ pub(crate) fn check(subject: &Subject, ray: Ray, tally: &mut Tally) -> Result<()
         objects: &objects,
         regions: &regions,
     };
-    check_points(&sight, &engine, tally)?;
+    check_points(subject, &sight, &engine, tally)?;
     check_skins(subject, &sight, &hits)
 }
 
@@ -112,7 +119,6 @@ impl Engine<'_> {
     fn region(&self, t: f64) -> (Option<u32>, Option<Option<u32>>) {
         let there = |c: &&Chord| c.enter.t < t && t < c.exit.t;
         let chord = self.regions.iter().find(there).map(|c| c.object.0);
-        let id = |region: Region| region.object().map(|object| object.0);
         let passed = self.hits.partition_point(|hit| hit.t < t);
         let crossing = match passed.checked_sub(1) {
             Some(last) => Some(id(self.hits[last].to)),
@@ -120,6 +126,10 @@ impl Engine<'_> {
         };
         (chord, crossing)
     }
+}
+
+fn id(region: Region) -> Option<u32> {
+    region.object().map(|object| object.0)
 }
 
 fn same<T: std::fmt::Debug + PartialEq>([octree, brute]: [T; 2]) -> Result<T, Disagreement> {
@@ -143,9 +153,18 @@ fn check_chain(hits: &[Hit]) -> Result<(), Disagreement> {
 
 fn check_half_line(subject: &Subject, ray: Ray, whole: &[Hit]) -> Result<(), Disagreement> {
     let half = same(subject.crossings(ray, false))?;
-    let ahead = whole.partition_point(|hit| hit.t <= 0.0);
-    if half != whole[ahead..] {
+    // A parameter may round to zero that is not.
+    let tail = whole.len().checked_sub(half.len());
+    let is_tail = tail.is_some_and(|at| {
+        let (behind, ahead) = whole.split_at(at);
+        let ends = behind.last().is_none_or(|hit| hit.t <= 0.0);
+        ends && ahead == half && half.first().is_none_or(|hit| hit.t >= 0.0)
+    });
+    if !is_tail {
         return disagree(Wrong::Line, format!("ahead {half:#?}\nof {whole:#?}"));
+    }
+    if same(subject.occluded(ray))? == half.is_empty() {
+        return disagree(Wrong::Line, format!("occluded differs from {half:#?}"));
     }
     let closest = same(subject.closest(ray))?;
     if closest != half.first().copied().unwrap_or(Hit::MISS) {
@@ -154,14 +173,14 @@ fn check_half_line(subject: &Subject, ray: Ray, whole: &[Hit]) -> Result<(), Dis
     Ok(())
 }
 
-/// The chords of an object have length and lie apart; those of a bounded one end.
+/// The chords of an object have length and do not overlap; those of a bounded one end.
 fn check_chords(subject: &Subject, chords: &[Chord]) -> Result<(), Disagreement> {
     for (index, chord) in chords.iter().enumerate() {
         let (start, end) = (chord.enter.t, chord.exit.t);
         let next = chords[index + 1..]
             .iter()
             .find(|c| c.object == chord.object);
-        let apart = next.is_none_or(|next| next.enter.t > end);
+        let apart = next.is_none_or(|next| next.enter.t >= end);
         let ends = start.is_finite() && end.is_finite();
         let bounded = subject.is_bounded[chord.object.0 as usize];
         if !(start < end && apart && (ends || !bounded)) {
@@ -190,7 +209,7 @@ fn points(sight: &Sight<'_>, ends: &[f64]) -> Vec<f64> {
     }
     for &t in ends {
         let near = sight.parameter(sight.uncertainty(t));
-        for multiple in [4.0, 64.0, 4096.0] {
+        for multiple in [16.0, 256.0, 4096.0] {
             points.extend([t - multiple * near, t + multiple * near]);
         }
     }
@@ -200,6 +219,7 @@ fn points(sight: &Sight<'_>, ends: &[f64]) -> Vec<f64> {
 }
 
 fn check_points(
+    subject: &Subject,
     sight: &Sight<'_>,
     engine: &Engine<'_>,
     tally: &mut Tally,
@@ -216,18 +236,89 @@ fn check_points(
         for (object, answer) in sight.oracle.objects().zip(&answers) {
             let found = engine.holds(object, t);
             if answer.is_some_and(|expected| expected != found) {
-                return contradiction(sight, engine, t, &answers, format!("object {object}"));
+                return contradiction(sight, engine, t, &answers, &format!("object {object}"));
             }
         }
         let (chord, crossing) = engine.region(t);
         let differs = |found: Option<u32>| place != Place::Near && place != Place::In(found);
         if differs(chord) || crossing.is_some_and(differs) {
-            return contradiction(sight, engine, t, &answers, format!("region {place:?}"));
+            return contradiction(sight, engine, t, &answers, &format!("region {place:?}"));
         }
     }
+    check_region(subject, sight, &mut answers)?;
     tally.pieces += seen.len() as u64;
-    tally.blind += seen.iter().filter(|seen| !**seen).count() as u64;
+    for (index, _) in seen.iter().enumerate().filter(|(_, seen)| !**seen) {
+        let low = index.checked_sub(1).map(|i| ends[i]);
+        let (Some(low), Some(&high)) = (low, ends.get(index)) else {
+            tally.blind += 1;
+            continue;
+        };
+        let middle = 0.5 * (low + high);
+        if !subject.is_delicate && check_in_face(sight, engine, middle)? {
+            tally.in_faces += 1;
+        } else if high - low <= 32.0 * sight.parameter(sight.uncertainty(middle)) {
+            tally.short += 1;
+        } else {
+            tally.blind += 1;
+        }
+    }
     Ok(())
+}
+
+/// The region of a point by itself, somewhere on the line.
+fn check_region(
+    subject: &Subject,
+    sight: &Sight<'_>,
+    answers: &mut Vec<Answer>,
+) -> Result<(), Disagreement> {
+    let turn = hash_u64(sight.shift().to_bits());
+    let away = 0.5 * sight.parameter(sight.radius()) * (2.0 * unit_f64(turn) - 1.0);
+    let point = sight.ray().at(sight.shift() + away);
+    let region = id(same(subject.region(point))?);
+    Sight::new(sight.oracle, Ray::new(point, DVec3::X)).answers(0.0, answers);
+    let place = sight.oracle.place(answers);
+    if place != Place::Near && place != Place::In(region) {
+        return disagree(
+            Wrong::Region,
+            format!("point {point:?} by itself: {region:?}, but {place:?}"),
+        );
+    }
+    Ok(())
+}
+
+/// Where a line runs in faces that coincide, and the same objects hold both sides of them, they
+/// hold the line too: there is no wall. Whether that could be compared.
+fn check_in_face(sight: &Sight<'_>, engine: &Engine<'_>, t: f64) -> Result<bool, Disagreement> {
+    let distance = 1024.0 * sight.uncertainty(t);
+    let Some(normal) = sight.shared_normal(t, 4.0 * distance) else {
+        return Ok(false);
+    };
+    let aside = normal * distance;
+    let ray = sight.ray();
+    let [above, below] = [aside, -aside].map(|aside| {
+        let mut answers = Vec::new();
+        let beside = Ray::new(ray.origin + aside, ray.direction);
+        Sight::new(sight.oracle, beside).answers(t, &mut answers);
+        answers
+    });
+    let mut compared = false;
+    for (object, sides) in sight.oracle.objects().zip(above.iter().zip(&below)) {
+        let (Some(above), Some(below)) = sides else {
+            continue;
+        };
+        if above != below {
+            continue;
+        }
+        compared = true;
+        if engine.holds(object, t) != *above {
+            let what = format!("object {object} on both sides of a face");
+            disagree(
+                Wrong::Skin,
+                format!("{what} at t = {t:?}: held {above}, {:?}", engine.objects),
+            )?;
+        }
+    }
+    Ok(compared)
 }
 
 /// A disagreement at a point, after the exact definitions have confirmed the oracle.
@@ -236,7 +327,7 @@ fn contradiction(
     engine: &Engine<'_>,
     t: f64,
     answers: &[Answer],
-    what: String,
+    what: &str,
 ) -> Result<(), Disagreement> {
     let exact = sight.oracle.exact_answers(sight.ray(), t);
     let confirmed = |(answer, exact): (&Answer, &Answer)| answer.is_none() || answer == exact;
@@ -276,7 +367,7 @@ fn check_skins(subject: &Subject, sight: &Sight<'_>, hits: &[Hit]) -> Result<(),
         let along = ray.direction.normalize();
         let aside = along.any_orthonormal_vector();
         let across = along.cross(aside);
-        let step = subject.oracle.scene_size() * 2.0_f64.powi(-16);
+        let step = subject.oracle.scene_size() * 2.0_f64.powi(-19);
         let neighbours = (0..8).filter(|i| {
             let (sin, cos) = libm::sincos(f64::from(*i) * 0.8 + 0.1);
             let offset: DVec3 = (aside * cos + across * sin) * (step * (1.0 + f64::from(*i)));

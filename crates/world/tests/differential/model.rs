@@ -3,9 +3,11 @@
 use std::sync::Arc;
 
 use octray_geometry::Solid;
-use octray_math::Ray;
+use octray_math::{DVec3, Ray};
 use octray_scene::{Material, Object, Scene, SceneBuilder};
-use octray_world::{Accel, Chord, Counters, Criteria, Hit, Overlaps, RayQuery, World, WorldConfig};
+use octray_world::{
+    Accel, Chord, Counters, Criteria, Hit, Overlaps, RayQuery, Region, World, WorldConfig,
+};
 
 use crate::oracle::Oracle;
 
@@ -53,9 +55,14 @@ fn deep() -> Criteria {
 }
 
 impl Model {
-    /// `None` if the scene is refused or has no primitive.
+    /// `None` if the scene is refused.
     pub(crate) fn prepare(&self) -> Option<Subject> {
-        let scene = self.scene()?;
+        self.prepare_as(self)
+    }
+
+    /// The engine gets another scene than the oracle: to see whether that is noticed.
+    pub(crate) fn prepare_as(&self, other: &Self) -> Option<Subject> {
+        let scene = other.scene()?;
         let world = |accel| {
             let config = WorldConfig {
                 accel,
@@ -71,12 +78,24 @@ impl Model {
             bounds.is_bounded() || bounds.is_empty()
         };
         Some(Subject {
-            oracle: Oracle::new(&scene, merged),
+            oracle: Oracle::new(&*self.scene()?, merged),
             is_delicate: self.delicate,
             is_bounded: self.parts.iter().map(is_bounded).collect(),
             octree,
             brute,
         })
+    }
+
+    /// The same scene elsewhere.
+    pub(crate) fn moved(&self, by: DVec3) -> Self {
+        let parts = self.parts.iter().map(|part| Part {
+            solid: part.solid.translate(by).expect("finite"),
+            ..*part
+        });
+        Self {
+            parts: parts.collect(),
+            ..*self
+        }
     }
 
     fn scene(&self) -> Option<Arc<Scene>> {
@@ -115,6 +134,25 @@ impl Subject {
                 &mut Counters::default(),
             );
             chords
+        })
+    }
+
+    /// The region of a point, from the octree and by brute force.
+    pub(crate) fn region(&self, point: DVec3) -> [Region; 2] {
+        [&self.octree, &self.brute].map(|world| {
+            let mut regions = Vec::new();
+            world.regions(&[point], &mut regions, &mut Counters::default());
+            regions[0]
+        })
+    }
+
+    /// Whether anything is on a ray, from the octree and by brute force.
+    pub(crate) fn occluded(&self, ray: Ray) -> [bool; 2] {
+        [&self.octree, &self.brute].map(|world| {
+            let mut blocked = Vec::new();
+            let query = RayQuery::new(ray);
+            world.occluded(&[query], &mut blocked, &mut Counters::default());
+            blocked[0]
         })
     }
 

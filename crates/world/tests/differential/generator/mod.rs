@@ -143,7 +143,7 @@ impl Tree<'_> {
             left -= own;
             children.push(self.grow(own));
         }
-        let node = match self.draw.weighted(&[4, 3, 5]) {
+        let node = match self.draw.weighted(&[5, 2, 5]) {
             0 => SolidNode::Union(children),
             1 => SolidNode::Intersection(children),
             _ => SolidNode::Difference(children),

@@ -37,7 +37,7 @@ impl Pose {
             }
             _ => factors.push(rotation(draw)),
         }
-        match draw.weighted(&[12, 2, 2, 1, 1]) {
+        match draw.weighted(&[12, 2, 2, 1, 1, 1]) {
             0 => {}
             1 => factors.push(transform::mirror(draw.pick(&[DVec3::X, DVec3::ONE]))),
             2 => factors.push(DAffine3::from_scale(draw.pick(&[
@@ -51,9 +51,15 @@ impl Pose {
                 DVec3::new(0.0, 0.25, 1.0),
                 DVec3::ZERO,
             )),
-            _ => {
+            4 => {
                 let size = DVec3::splat(1.0) + draw.direction().abs() * 3.0;
                 factors.push(DAffine3::from_scale(size) * rotation(draw));
+            }
+            // Sheets and needles.
+            _ => {
+                let thin = draw.pick(&[1e-2, 1e-4]);
+                let size = [DVec3::new(1.0, thin, 1.0), DVec3::new(thin, thin, 1.0)];
+                factors.push(DAffine3::from_scale(draw.pick(&size)));
             }
         }
         Self { factors }

@@ -75,7 +75,7 @@ impl<'a> Rays<'a> {
         let (point, direction) = self.special(draw);
         match family {
             Family::Random => {
-                let inside = draw.direction() * (self.radius * draw.unit());
+                let inside = draw.direction() * (0.5 * self.radius * draw.unit());
                 (self.center + inside, draw.direction())
             }
             Family::Point => (point, draw.direction()),

@@ -4,6 +4,7 @@
 //! the nearest boundary: while a boundary moves by less than that, the point stays on its side.
 
 use octray_geometry::Primitive;
+use octray_math::DVec3;
 
 use super::number::Number;
 
@@ -81,5 +82,35 @@ pub(crate) fn extent(primitive: &Primitive) -> f64 {
             .iter()
             .fold(0.0, |size, v| v.abs().max_element().max(size)),
         other => panic!("no definition of {other:?}"),
+    }
+}
+
+/// The flat faces of a primitive, `normal . x <= offset`, and the clearance from its curved one.
+pub(crate) fn faces(primitive: &Primitive, q: DVec3) -> (Vec<(DVec3, f64)>, Option<f64>) {
+    let caps = |z: &[f64; 2]| {
+        let ends = [(DVec3::Z, z[1]), (DVec3::NEG_Z, -z[0])];
+        ends.into_iter().filter(|end| end.1.is_finite()).collect()
+    };
+    let mantle = |open: Primitive| Some(clearance(&open, q.to_array()));
+    let ends = [f64::NEG_INFINITY, f64::INFINITY];
+    match primitive {
+        Primitive::Box { min, max } => {
+            let axes = [DVec3::X, DVec3::Y, DVec3::Z].into_iter();
+            let sides = axes.flat_map(|n| [(n, max.dot(n)), (-n, -min.dot(n))]);
+            (sides.collect(), None)
+        }
+        Primitive::Cylinder { radius, z } => {
+            let radius = *radius;
+            (caps(z), mantle(Primitive::Cylinder { radius, z: ends }))
+        }
+        Primitive::Cone { radius, z } => {
+            // Between the caps, or as far beyond them as the mantle is not needed.
+            let slope = (radius[1] - radius[0]) / (z[1] - z[0]);
+            let across = libm::hypot(q.x, q.y) - (radius[0] + slope * (q.z - z[0]));
+            (caps(z), Some(across / libm::hypot(1.0, slope)))
+        }
+        Primitive::HalfSpace { normal, offset } => (vec![(*normal, *offset)], None),
+        Primitive::Convex(polyhedron) => (polyhedron.planes.clone(), None),
+        other => (Vec::new(), Some(clearance(other, q.to_array()))),
     }
 }

@@ -81,6 +81,13 @@ impl Frame {
         self.local_vector(away)
     }
 
+    /// The unit normal in the world of a plane in this frame.
+    pub(crate) fn world_normal(&self, normal: DVec3) -> DVec3 {
+        let rows = self.local_from_world.map(|row| row.map(Number::rounded));
+        let [x, y, z] = rows.map(DVec3::from_array);
+        (x * normal.x + y * normal.y + z * normal.z).normalize()
+    }
+
     /// A direction of the world in this frame.
     pub(crate) fn local_vector(&self, v: Row<Twofold>) -> Row<Twofold> {
         self.local_from_world.map(|row| dot(row, v))

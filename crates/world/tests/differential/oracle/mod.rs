@@ -167,15 +167,23 @@ impl Oracle {
     }
 
     /// The region of a point, given which objects hold it.
+    ///
+    /// Which of two objects is the smaller one is not known where rounding decides it.
     pub(crate) fn place(&self, answers: &[Answer]) -> Place {
-        for (owner, answer) in self.owners.iter().zip(answers) {
-            match answer {
-                Some(true) => return Place::In(Some(owner.object)),
-                Some(false) => {}
-                None => return Place::Near,
-            }
+        let holding = |(_, answer): &(&Owner, &Answer)| **answer != Some(false);
+        let mut holding = self.owners.iter().zip(answers).filter(holding);
+        let Some((first, answer)) = holding.next() else {
+            return Place::In(None);
+        };
+        let alike = |other: &Owner| {
+            let apart = (other.size - first.size).abs();
+            other.priority == first.priority && apart <= 1e-9 * first.size
+        };
+        let rivals = holding.any(|(other, _)| first.size.is_finite() && alike(other));
+        match answer {
+            Some(true) if !rivals => Place::In(Some(first.object)),
+            _ => Place::Near,
         }
-        Place::In(None)
     }
 
     /// Whether each object holds a point, by rank, without any rounding or margin; not known means

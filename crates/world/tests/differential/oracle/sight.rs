@@ -2,14 +2,14 @@
 
 use octray_math::{DVec3, Ray};
 
-use super::clearance::clearance;
+use super::clearance::{clearance, faces};
 use super::number::{Number, Twofold};
-use super::{Answer, Oracle};
+use super::{Answer, Leaf, Oracle};
 
 /// Rounding errors of the engine are bounded by this many units in the last place of the lengths
 /// that are added: a dozen operations from the ray to a crossing, each wrong by half a unit, and
 /// norms that are bounded by sums.
-const ROUNDINGS: f64 = 16.0;
+const ROUNDINGS: f64 = 4.0;
 
 /// A ray in front of an oracle.
 #[derive(Debug)]
@@ -92,17 +92,22 @@ impl<'a> Sight<'a> {
         });
     }
 
-    fn is_inside(&self, index: usize, t: f64, u: f64, far: f64, uncertainty: f64) -> Answer {
-        let leaf = &self.oracle.leaves[index];
-        let (frame, line) = (&leaf.frame, &self.lines[index]);
-        let q = line.origin + line.direction * u;
-        // In the primitive's units: what the point is off, what composing and inverting transforms
-        // costs, and what the formula itself adds.
+    /// How far a primitive's boundary may be off at a point, in the primitive's units.
+    fn margin(&self, leaf: &Leaf, q: DVec3, far: f64, uncertainty: f64) -> f64 {
+        let frame = &leaf.frame;
+        // What the point is off, what composing and inverting transforms costs, and what the
+        // formula itself adds.
         let size = q.length() + leaf.extent;
         let chain = frame.shrink * (frame.stretch * size + frame.reach);
         let inverse = frame.condition * frame.shrink * far;
-        let margin =
-            frame.shrink * uncertainty + ROUNDINGS * f64::EPSILON * (chain + inverse + size);
+        frame.shrink * uncertainty + ROUNDINGS * f64::EPSILON * (chain + inverse + size)
+    }
+
+    fn is_inside(&self, index: usize, t: f64, u: f64, far: f64, uncertainty: f64) -> Answer {
+        let leaf = &self.oracle.leaves[index];
+        let line = &self.lines[index];
+        let q = line.origin + line.direction * u;
+        let margin = self.margin(leaf, q, far, uncertainty);
         let coarse = clearance(&leaf.primitive, q.to_array());
         if coarse.abs() > 2.0 * margin {
             return Some(coarse < 0.0);
@@ -110,8 +115,37 @@ impl<'a> Sight<'a> {
         if coarse.abs() < 0.5 * margin {
             return None;
         }
-        let fine = clearance(&leaf.primitive, frame.local(point_at(&self.ray, t))).rounded();
+        let point = leaf.frame.local(point_at(&self.ray, t));
+        let fine = clearance(&leaf.primitive, point).rounded();
         (fine.abs() > margin).then_some(fine < 0.0)
+    }
+
+    /// The normal of the flat faces that are too near to tell their sides at `t`, if there are any,
+    /// all lie in one plane, and nothing else is nearer than `room`.
+    pub(crate) fn shared_normal(&self, t: f64, room: f64) -> Option<DVec3> {
+        let (far, uncertainty) = (self.far(t), self.uncertainty(t));
+        let mut shared: Option<DVec3> = None;
+        for (leaf, line) in self.oracle.leaves.iter().zip(&self.lines) {
+            let q = line.origin + line.direction * (t - self.shift);
+            let near = 2.0 * self.margin(leaf, q, far, uncertainty);
+            let clear = near.max(room * leaf.frame.shrink);
+            let (flat, curved) = faces(&leaf.primitive, q);
+            if curved.is_some_and(|clearance| clearance.abs() <= clear) {
+                return None;
+            }
+            for (normal, offset) in flat {
+                let height = (normal.dot(q) - offset).abs();
+                if height > clear {
+                    continue;
+                }
+                let normal = leaf.frame.world_normal(normal);
+                let first = *shared.get_or_insert(normal);
+                if height > near || first.cross(normal).length() > 1e-9 {
+                    return None;
+                }
+            }
+        }
+        shared
     }
 }
 
