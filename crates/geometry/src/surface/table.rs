@@ -95,12 +95,6 @@ impl SurfaceTable {
         self.merged
     }
 
-    /// How far surfaces may be apart to be one, in units of the scene's size.
-    #[must_use]
-    pub const fn tolerance(&self) -> f64 {
-        self.tolerance
-    }
-
     /// The surfaces that nearly coincide with an earlier one (see [`NEAR`](super::NEAR)).
     #[must_use]
     pub fn near_pairs(&self) -> Vec<NearPair> {
