@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import platform
+import subprocess
 import sys
 import tempfile
 from pathlib import Path
@@ -11,6 +12,31 @@ from pathlib import Path
 import report
 
 import octray
+
+
+def compare(name: str, folder: Path, rays: int) -> list[report.Row]:
+    """The rows of one peer."""
+    if name == "raysect":
+        import raysect_solids
+
+        return list(raysect_solids.compare(rays))
+    if name == "POV-Ray":
+        import povray_pictures
+
+        return list(povray_pictures.compare(folder, rays))
+    if name == "OpenSCAD":
+        import openscad_models
+
+        return list(openscad_models.compare(folder))
+    if name == "Manifold":
+        import manifold_models
+
+        return list(manifold_models.compare())
+    if name in {"Embree (embreex)", "Open3D"}:
+        import mesh_parity
+
+        return list(mesh_parity.compare(name, rays))
+    return []  # trimesh is the way to Embree
 
 
 def main() -> None:
@@ -29,6 +55,7 @@ def main() -> None:
     print(flush=True)
 
     rows: list[report.Row] = []
+    failed = False
     with tempfile.TemporaryDirectory() as scratch:
         folder = options.keep or Path(scratch)
         folder.mkdir(parents=True, exist_ok=True)
@@ -36,27 +63,13 @@ def main() -> None:
             if options.only and options.only.lower() not in name.lower():
                 continue
             print(f"running {name} ...", file=sys.stderr, flush=True)
-            if name == "raysect":
-                import raysect_solids
-
-                rows += raysect_solids.compare(options.rays)
-            elif name == "POV-Ray":
-                import povray_pictures
-
-                rows += povray_pictures.compare(folder, options.rays)
-            elif name == "OpenSCAD":
-                import openscad_models
-
-                rows += openscad_models.compare(folder)
-            elif name == "Manifold":
-                import manifold_models
-
-                rows += manifold_models.compare()
-            elif name in {"Embree (embreex)", "Open3D"}:
-                import mesh_parity
-
-                rows += mesh_parity.compare(name, options.rays)
+            try:
+                rows += compare(name, folder, options.rays)
+            except (RuntimeError, OSError, subprocess.TimeoutExpired) as error:
+                print(f"{name} failed: {error}", file=sys.stderr)
+                failed = True
     print(report.markdown(rows))
+    sys.exit(failed)
 
 
 if __name__ == "__main__":

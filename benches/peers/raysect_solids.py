@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from rays import (
     BORE,
     along_the_bore,
+    between_grid_points,
     expect_bored_cube,
     expect_cells,
     expect_cube,
@@ -16,6 +18,7 @@ from rays import (
     rotated,
     through_a_cube,
     through_a_grid,
+    without_slivers,
 )
 from report import Row, share
 
@@ -41,6 +44,29 @@ def crossings(primitive: Any, rays: np.ndarray) -> np.ndarray:
             counts[i] += 1
             hit = primitive.next_intersection()
     return counts
+
+
+def distances(primitive: Any, rays: np.ndarray) -> list[list[float]]:
+    """The parameters at which each ray meets the primitive's boundary, in order."""
+    from raysect.core import Point3D, Ray, Vector3D
+
+    found = []
+    for ox, oy, oz, dx, dy, dz in rays.tolist():
+        direction = Vector3D(dx, dy, dz)
+        hit = primitive.hit(Ray(Point3D(ox, oy, oz), direction.normalise()))
+        at: list[float] = []
+        while hit is not None and len(at) < ENDLESS:
+            at.append(hit.ray_distance / direction.length)
+            hit = primitive.next_intersection()
+        found.append(at)
+    return found
+
+
+def octray_distances(scene: octray.Scene, rays: np.ndarray) -> list[list[float]]:
+    """The same for octray."""
+    found = scene.list_intersections(rays)
+    both = np.column_stack([found.t_enter, found.t_exit]).ravel().tolist()
+    return [both[2 * a : 2 * b] for a, b in pairwise(found.offsets.tolist())]
 
 
 def compare(rays_per_scene: int) -> Iterator[Row]:
@@ -128,14 +154,32 @@ def menger(level: int, count: int) -> Iterator[Row]:
     expected, sure = expect_cells(rays, menger_cells(level))
     rays, expected = rays[sure], expected[sure]
     theirs = crossings(sponge, rays)
-    ours = octray_sponge(level).count_intersections(rays)
+    scene = octray_sponge(level)
+    ours = scene.count_intersections(rays)
+    name = f"Menger sponge of level {level} cut by {len(cutters)} boxes"
     yield Row(
-        f"Menger sponge of level {level} cut by {len(cutters)} boxes",
+        name,
         "wrong number of crossings, random rays",
         "raysect",
         share(np.count_nonzero(theirs != expected), len(rays)),
         share(np.count_nonzero(ours != expected), len(rays)),
     )
+
+    rays = between_grid_points(size, count, 5)
+    expected, _ = expect_cells(rays, menger_cells(level))
+    for what, of in (
+        ("", len),
+        (", what is shorter than 10^-9 left out", without_slivers),
+    ):
+        theirs = np.array([of(at) for at in distances(sponge, rays)])
+        ours = np.array([of(at) for at in octray_distances(scene, rays)])
+        yield Row(
+            name,
+            f"the same, rays through edges and corners{what}",
+            "raysect",
+            share(np.count_nonzero(theirs != expected), count),
+            share(np.count_nonzero(ours != expected), count),
+        )
 
 
 def octray_sponge(level: int) -> octray.Scene:

@@ -67,7 +67,7 @@ def absent(found: dict[str, str]) -> list[str]:
 
 def markdown(rows: list[Row]) -> str:
     """The rows as a table."""
-    lines = ["| scene | counted | peer | peer | octray |", "|---|---|---|--:|--:|"]
+    lines = ["| scene | counted | peer | its result | octray's |", "|---|---|---|--:|--:|"]
     previous = ("", "")
     for row in rows:
         scene = "" if row.scene == previous[0] else row.scene
