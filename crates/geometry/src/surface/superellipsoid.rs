@@ -146,6 +146,21 @@ impl Octant {
         }
     }
 
+    /// How wrong `r - w` may be.
+    fn rounding(&self, sample: &Sample) -> f64 {
+        let Shape { a, c } = self.shape;
+        4.0 * f64::EPSILON * (1.0 + 1.0 / a + 1.0 / c) * sample.values[0].max(1.0)
+    }
+
+    /// Whether `r - w` bends to one side only, and is clear of 0 at both samples: then it changes
+    /// its sign at most once if it does at all. (Where it is 0 at an end, but for rounding, it may
+    /// change there and once more.)
+    fn bends_once(&self, s0: &Sample, s1: &Sample) -> bool {
+        let Shape { a, c } = self.shape;
+        let clear = |s: &Sample| s.difference.abs() > self.rounding(s);
+        ((a >= 1.0 && c >= 1.0) || (a <= 1.0 && c <= 1.0)) && clear(s0) && clear(s1)
+    }
+
     /// Whether `r - w` does not change its sign between two samples that agree: it is not 0 in
     /// between, or 0 but for rounding all the way.
     fn excludes(&self, s0: &Sample, s1: &Sample) -> bool {
@@ -169,9 +184,7 @@ impl Octant {
             .map(|[a, b]| if (a + b).is_nan() { f64::NAN } else { a.max(b) })
             .into_iter()
             .fold(f64::INFINITY, f64::min);
-        let Shape { a, c } = self.shape;
-        let size = s0.values[0].max(s1.values[0]).max(1.0);
-        let rounding = 4.0 * f64::EPSILON * (1.0 + 1.0 / a + 1.0 / c) * size;
+        let rounding = self.rounding(s0).max(self.rounding(s1));
         least > 0.0 || most < 0.0 || (least >= -rounding && most <= rounding)
     }
 
@@ -194,11 +207,9 @@ impl Octant {
         changes: &mut SignChangeList,
     ) {
         let change = (s0.difference < 0.0) != (s1.difference < 0.0);
-        let Shape { a, c } = self.shape;
-        let one_curvature = (a >= 1.0 && c >= 1.0) || (a <= 1.0 && c <= 1.0);
         let middle = 0.5 * (s0.t + s1.t);
         let decided = Self::is_monotone(s0, s1)
-            || (change && one_curvature)
+            || (change && self.bends_once(s0, s1))
             || (!change && self.excludes(s0, s1))
             || depth == 0
             || *left == 0
@@ -234,7 +245,9 @@ pub(super) fn crossings(exponents: [f64; 2], o: DVec3, d: DVec3) -> SignChangeLi
         }
     }
     knots[1..4].sort_by(f64::total_cmp);
-    let mut low = f64::MIN_POSITIVE;
+    // The solid does not reach out of its box.
+    let outside = |t: f64| shape.difference(p + unit * t).max(f64::MIN_POSITIVE);
+    let mut low = outside(span.start);
     let mut left = MAX_SAMPLES;
     for (i, pair) in knots.windows(2).enumerate() {
         if !(pair[0] < pair[1]) {
@@ -247,9 +260,8 @@ pub(super) fn crossings(exponents: [f64; 2], o: DVec3, d: DVec3) -> SignChangeLi
             p: p * signs,
             d: unit * signs,
         };
-        // The solid does not reach out of its box.
         let is_last = i == 3 || pair[1] >= span.end;
-        let end = is_last.then_some(f64::MIN_POSITIVE);
+        let end = is_last.then(|| outside(pair[1]));
         let (s0, s1) = (
             octant.sample(pair[0], Some(low)),
             octant.sample(pair[1], end),
