@@ -23,6 +23,7 @@ use octray_math::{Aabb, DAffine3, DVec3, Ray};
 
 use crate::Polynomial;
 use local_box::LocalBox;
+pub(crate) use polynomial::range as polynomial_range;
 pub use quadric::QuadricForm;
 pub(crate) use table::points_upward;
 pub use table::{PLACE_TOLERANCE, SURFACE_TOLERANCE, SurfaceTable};

@@ -111,12 +111,15 @@ fn grazing_lines_cross_bounded_surfaces_an_even_number_of_times() {
             continue;
         }
         let local = placed(canonical, DAffine3::IDENTITY);
-        // What is entered is really there: the function is not positive in the middle.
+        // What is entered is really there: not outside in the middle, nor a rounding error nearer
+        // to the coordinate planes, where a pinched solid may be as thin as that.
+        let rounding = 1e-15 * (1.0 + far);
         for pair in t.chunks(2) {
-            let middle = implicit_value(&local, ray.at(0.5 * (pair[0] + pair[1])));
+            let middle = ray.at(0.5 * (pair[0] + pair[1])).abs();
+            let value = implicit_value(&local, (middle - rounding).max(DVec3::ZERO));
             assert!(
-                middle < 1e-9 * (1.0 + far),
-                "{case} {local:?} {ray:?} {t:?} {middle}"
+                value < 1e-9 * (1.0 + far),
+                "{case} {local:?} {ray:?} {t:?} {value}"
             );
         }
     }
