@@ -9,6 +9,8 @@ pub mod csg;
 mod frame;
 mod identity;
 pub mod mesh;
+pub mod polygon;
+mod polyhedron;
 mod primitive;
 pub mod profile;
 mod sheet;
