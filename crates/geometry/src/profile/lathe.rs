@@ -1,6 +1,6 @@
 //! Regions turned about the z axis.
 
-use octray_math::{Aabb, DAffine3, DVec2, DVec3};
+use octray_math::{Aabb, DAffine3, DVec2, DVec3, transform};
 
 use super::curve::Curve;
 use super::decompose::{Decomposition, PlaneSide, Wishes};
@@ -20,12 +20,27 @@ const WISHES: Wishes = Wishes {
     takes_disc: turns_round,
 };
 
+/// Turning in straight steps, as by a polygon with corners on the circle.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Facets {
+    /// Direction of the first corner from the axis, in degrees from x towards y.
+    pub start: f64,
+    /// How far it is from one corner to the next, in degrees below 180.
+    pub step: f64,
+    /// How many steps.
+    pub count: u32,
+}
+
 /// The solid that the region sweeps when it turns about the z axis: its x is the distance from
 /// the axis, its y the height.
 ///
+/// With `facets` it turns in straight steps; where these do not go all the way round, they say
+/// nothing about the rest.
+///
 /// # Errors
-/// A part of the region lies at negative x.
-pub(crate) fn lathe(region: &Region) -> Result<Composite, ShapeError> {
+/// A part of the region lies at negative x, or it is to turn in straight steps and has curves or
+/// edges that cross.
+pub(crate) fn lathe(region: &Region, facets: Option<Facets>) -> Result<Composite, ShapeError> {
     if region.pieces.iter().any(|p| crosses_axis(&p.curve(), 8)) {
         return Err(ShapeError::BadProfile(
             "reaches to the other side of the axis that it is turned about",
@@ -34,9 +49,16 @@ pub(crate) fn lathe(region: &Region) -> Result<Composite, ShapeError> {
     let [low, high] = region.bounds();
     let mut turned = Turned {
         heights: [low.y, high.y],
+        facets: facets.map(steps).unwrap_or_default(),
         faces: Vec::new(),
     };
     let whole = Decomposition::new(region, WISHES);
+    let is_line = |side: &PlaneSide| matches!(side, PlaneSide::Line(..));
+    if facets.is_some() && !whole.sides.iter().all(is_line) {
+        return Err(ShapeError::BadProfile(
+            "has curves or crossing edges, which cannot be turned in steps",
+        ));
+    }
     let sides: Vec<Formula> = whole.sides.into_iter().map(|s| turned.side(s)).collect();
     let mut parts = vec![
         whole
@@ -65,7 +87,21 @@ fn crosses_axis(curve: &Curve, halvings: u32) -> bool {
     ends || (halvings > 0 && halves().iter().any(|half| crosses_axis(half, halvings - 1)))
 }
 
+/// The outward normal of each facet, times the distance of its plane for a polygon with corners
+/// at distance 1.
+fn steps(facets: Facets) -> Vec<(DVec2, f64)> {
+    let (_, apothem) = transform::sin_cos_degrees(0.5 * facets.step);
+    let normal = |i: u32| {
+        let middle = facets.start + facets.step * (f64::from(i) + 0.5);
+        let (sin, cos) = transform::sin_cos_degrees(middle);
+        (DVec2::new(cos, sin), apothem)
+    };
+    (0..facets.count).map(normal).collect()
+}
+
 struct Turned {
+    /// Normals and distances of a polygon with corners at distance 1; none to turn smoothly.
+    facets: Vec<(DVec2, f64)>,
     /// Below and above there is nothing: planes end the solid there.
     heights: [f64; 2],
     faces: Vec<CompositeFace>,
@@ -112,17 +148,33 @@ impl Turned {
         }
         // Left of a line that runs upwards is the axis.
         let rises = b.y > a.y;
-        let within = if a.x == b.x {
-            if a.x == 0.0 {
-                // Nothing is nearer to the axis than the axis.
-                Formula::Constant(false)
-            } else {
-                self.curved(Canonical::Cylinder, 0.0, DVec3::new(a.x, a.x, 1.0))
-            }
+        let within = if a.x == 0.0 && b.x == 0.0 {
+            // Nothing is nearer to the axis than the axis.
+            Formula::Constant(false)
+        } else if !self.facets.is_empty() {
+            self.facets_within(a, b)
+        } else if a.x == b.x {
+            self.curved(Canonical::Cylinder, 0.0, DVec3::new(a.x, a.x, 1.0))
         } else {
             self.nappe(a, b)
         };
         if rises { within } else { within.complement() }
+    }
+
+    /// What lies nearer to the axis than the line through `a` and `b`, turned in steps.
+    fn facets_within(&mut self, a: DVec2, b: DVec2) -> Formula {
+        let growth = (b.x - a.x) / (b.y - a.y);
+        let wide = if a.x > b.x { a } else { b };
+        let facets = std::mem::take(&mut self.facets);
+        let planes = facets.iter().map(|&(normal, apothem)| {
+            self.push(CompositeFace::Plane {
+                normal: normal.extend(-growth * apothem),
+                point: (normal * (apothem * wide.x)).extend(wide.y),
+            })
+        });
+        let within = Formula::all(planes.collect::<Vec<_>>());
+        self.facets = facets;
+        within
     }
 
     /// What lies nearer to the axis than the line through `a` and `b`.
