@@ -16,6 +16,10 @@ pub(super) enum Drawing {
     Turned(Turn),
 }
 
+/// One of the drawings of a file.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct DrawingId(pub(super) u32);
+
 /// From where to where, and how large the top is in units of the bottom.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Slab {

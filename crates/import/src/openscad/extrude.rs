@@ -5,7 +5,7 @@ use octray_geometry::profile::Facets;
 use octray_math::{DAffine3, DVec3};
 
 use super::arguments::Arguments;
-use super::drawing::{Drawing, Slab, Turn};
+use super::drawing::{Drawing, DrawingId, Slab, Turn};
 use super::lower::{Lowering, Surroundings};
 use super::modules::Module;
 use super::operand::{Operand, Operation, Part};
@@ -84,7 +84,10 @@ impl Lowering<'_> {
             return Operand::Unknown;
         }
         let given = arguments.number("angle", self.diagnostics);
-        let angle = given.filter(|a| a.is_finite() && *a != 0.0 && a.abs() < 360.0);
+        if given == Some(0.0) {
+            return Operand::Solid(Part::leaf(Solid::empty()));
+        }
+        let angle = given.filter(|a| a.is_finite() && a.abs() < 360.0);
         let angle = angle.unwrap_or(360.0);
         let start = arguments.number("start", self.diagnostics);
         let whole = angle == 360.0;
@@ -152,7 +155,7 @@ impl Lowering<'_> {
         drawing: Drawing,
     ) -> Operand {
         let inside = Surroundings {
-            drawing: Some(drawing),
+            drawing: Some(self.drawing(drawing)),
             ..around
         };
         match self.combined(Operation::Union, statement, inside) {
@@ -175,13 +178,30 @@ impl Lowering<'_> {
         operand
     }
 
+    /// Keeps a drawing, so that what holds around a statement stays small: lowering recurses.
+    fn drawing(&mut self, drawing: Drawing) -> DrawingId {
+        self.drawings.push(drawing);
+        DrawingId(self.drawings.len() as u32 - 1)
+    }
+
+    /// Something flat under a transform: it as a transform of solids, and the drawing within.
+    pub(super) fn flat_transform(
+        &mut self,
+        own: DAffine3,
+        drawing: DrawingId,
+    ) -> (DAffine3, DrawingId) {
+        let (there, within) = self.drawings[drawing.0 as usize].transformed(own);
+        (there, self.drawing(within))
+    }
+
     /// A flat shape, drawn out or turned.
     pub(super) fn flat_shape(
         &mut self,
         module: Module,
         statement: &Statement<'_>,
-        drawing: Drawing,
+        drawing: DrawingId,
     ) -> Operand {
+        let drawing = self.drawings[drawing.0 as usize];
         let mut workshop = self.workshop();
         let solid = match module {
             Module::Circle => workshop.circle(statement, drawing),

@@ -7,7 +7,7 @@ use octray_scene::{MaterialId, SceneBuilder};
 use crate::{Diagnostics, Options, Span};
 
 use super::arguments::Arguments;
-use super::drawing::Drawing;
+use super::drawing::{Drawing, DrawingId};
 use super::modules::Module;
 use super::operand::{OpenFaces, Operand, Operation, Part};
 use super::paint::{Palette, Rgba, color_argument, is_complete};
@@ -29,7 +29,7 @@ pub(super) struct Surroundings {
     /// Whether the statement is taken away from something, an odd number of times.
     pub(super) subtracted: bool,
     /// What becomes of flat shapes; `None` outside of `linear_extrude` and `rotate_extrude`.
-    pub(super) drawing: Option<Drawing>,
+    pub(super) drawing: Option<DrawingId>,
 }
 
 /// Makes objects of statements.
@@ -39,6 +39,8 @@ pub(super) struct Lowering<'l> {
     pub(super) budget: Budget,
     pub(super) builder: SceneBuilder,
     pub(super) palette: Palette,
+    /// What becomes of flat shapes, by [`DrawingId`].
+    pub(super) drawings: Vec<Drawing>,
 }
 
 impl<'l> Lowering<'l> {
@@ -49,6 +51,7 @@ impl<'l> Lowering<'l> {
             budget: Budget::new(options.memory_budget),
             builder: SceneBuilder::new(),
             palette: Palette::default(),
+            drawings: Vec::new(),
         }
     }
 
@@ -89,7 +92,7 @@ impl<'l> Lowering<'l> {
                 let mut own = matrix(statement, self.diagnostics);
                 let mut inside = around;
                 if let Some(drawing) = around.drawing {
-                    let (there, within) = drawing.transformed(own);
+                    let (there, within) = self.flat_transform(own, drawing);
                     own = there;
                     inside.drawing = Some(within);
                 }
