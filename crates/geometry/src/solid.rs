@@ -8,7 +8,7 @@ use crate::MaterialId;
 use crate::mesh::TriangleMesh;
 use crate::polyhedron;
 use crate::primitive::{ConvexPolyhedron, Primitive, ShapeError};
-use crate::profile::{self, Facets, Region};
+use crate::profile::{self, Region, Turning};
 
 /// An immutable CSG tree, shared on clone.
 ///
@@ -385,48 +385,18 @@ impl Solid {
     /// # Errors
     /// A part of the region lies at negative x.
     pub fn lathe(region: &Region) -> Result<Self, ShapeError> {
-        let lathe = profile::lathe(region, None)?;
-        Ok(Self::primitive(Primitive::Composite(Arc::new(lathe))))
+        Self::turned_lathe(region, Turning::ROUND)
     }
 
-    /// Like [`Solid::lathe`], turned in straight steps. Where these do not go all the way round,
-    /// intersect it with a [`Solid::wedge`].
+    /// Like [`Solid::lathe`], but not all the way round, or in straight steps.
     ///
     /// # Errors
-    /// Like [`Solid::lathe`], or the region has curves or edges that cross, or the steps are not
-    /// positive and below 180 degrees.
-    pub fn faceted_lathe(region: &Region, facets: Facets) -> Result<Self, ShapeError> {
-        finite("start", facets.start)?;
-        positive("step", facets.step)?;
-        positive("180 - step", 180.0 - facets.step)?;
-        let lathe = profile::lathe(region, Some(facets))?;
+    /// Like [`Solid::lathe`]; the turn is not finite, not positive or more than 360 degrees; a step
+    /// is 180 degrees or more, or the region has curves or edges that cross and is to turn in
+    /// steps.
+    pub fn turned_lathe(region: &Region, turning: Turning) -> Result<Self, ShapeError> {
+        let lathe = profile::lathe(region, turning)?;
         Ok(Self::primitive(Primitive::Composite(Arc::new(lathe))))
-    }
-
-    /// The points that one passes by turning the half-plane at `start` degrees (from x towards y)
-    /// about the z axis by `sweep` degrees: everything from 360 on.
-    ///
-    /// # Errors
-    /// `start` or `sweep` is not finite, or `sweep` is not positive.
-    pub fn wedge(start: f64, sweep: f64) -> Result<Self, ShapeError> {
-        finite("start", start)?;
-        positive("sweep", sweep)?;
-        if sweep >= 360.0 {
-            return Ok(Self::empty().complement());
-        }
-        let at = |degrees: f64| {
-            let (sin, cos) = transform::sin_cos_degrees(degrees);
-            DVec3::new(-sin, cos, 0.0)
-        };
-        let sides = [
-            Self::half_space(-at(start), 0.0)?,
-            Self::half_space(at(start + sweep), 0.0)?,
-        ];
-        Ok(if sweep <= 180.0 {
-            Self::intersection(sides)
-        } else {
-            Self::union(sides)
-        })
     }
 
     /// The inside of a closed mesh.

@@ -20,41 +20,104 @@ const WISHES: Wishes = Wishes {
     takes_disc: turns_round,
 };
 
-/// Turning in straight steps, as by a polygon with corners on the circle.
+/// How a region turns about the z axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Facets {
-    /// Direction of the first corner from the axis, in degrees from x towards y.
+pub struct Turning {
+    /// The direction in which it begins, in degrees from x towards y.
     pub start: f64,
-    /// How far it is from one corner to the next, in degrees below 180.
-    pub step: f64,
-    /// How many steps.
-    pub count: u32,
+    /// By how many degrees it turns: more than 0, at most 360.
+    pub sweep: f64,
+    /// In how many straight steps, as by a polygon with its corners on the circle; `None` smoothly.
+    pub steps: Option<u32>,
+}
+
+impl Turning {
+    /// All the way round, smoothly.
+    pub const ROUND: Self = Self {
+        start: 0.0,
+        sweep: 360.0,
+        steps: None,
+    };
+
+    fn is_whole(&self) -> bool {
+        self.sweep >= 360.0
+    }
+
+    /// The direction, as a unit vector, after this part of the whole turn.
+    fn direction(&self, part: f64) -> DVec2 {
+        let (sin, cos) = transform::sin_cos_degrees(self.start + self.sweep * part);
+        DVec2::new(cos, sin)
+    }
+
+    /// The outward normal of each step's facet, times the distance of its plane where the corners
+    /// have distance 1.
+    fn facets(&self) -> Vec<(DVec2, f64)> {
+        let Some(steps) = self.steps else {
+            return Vec::new();
+        };
+        let count = f64::from(steps);
+        let (_, apothem) = transform::sin_cos_degrees(0.5 * self.sweep / count);
+        let middles = (0..steps).map(|i| (f64::from(i) + 0.5) / count);
+        middles
+            .map(|part| (self.direction(part), apothem))
+            .collect()
+    }
+
+    /// A box around what a distance between these two from the axis passes.
+    fn bounds(&self, least: f64, most: f64) -> [DVec2; 2] {
+        let steps = self.steps.unwrap_or(1).max(1);
+        let mut corners = Vec::new();
+        for i in 0..=steps {
+            let direction = self.direction(f64::from(i) / f64::from(steps));
+            corners.extend([direction * least, direction * most]);
+        }
+        if self.steps.is_none() {
+            // Where the arc passes an axis.
+            for (quarter, axis) in [DVec2::X, DVec2::Y, -DVec2::X, -DVec2::Y]
+                .iter()
+                .enumerate()
+            {
+                let ahead = (90.0 * quarter as f64 - self.start).rem_euclid(360.0);
+                if ahead <= self.sweep {
+                    corners.push(*axis * most);
+                }
+            }
+        }
+        let fold = |f: fn(DVec2, DVec2) -> DVec2| corners.iter().copied().reduce(f);
+        [fold(DVec2::min), fold(DVec2::max)].map(Option::unwrap_or_default)
+    }
 }
 
 /// The solid that the region sweeps when it turns about the z axis: its x is the distance from
 /// the axis, its y the height.
 ///
-/// With `facets` it turns in straight steps; where these do not go all the way round, they say
-/// nothing about the rest.
-///
 /// # Errors
-/// A part of the region lies at negative x, or it is to turn in straight steps and has curves or
-/// edges that cross.
-pub(crate) fn lathe(region: &Region, facets: Option<Facets>) -> Result<Composite, ShapeError> {
+/// A part of the region lies at negative x; the turn is not finite, not positive or more than 360
+/// degrees; a step is 180 degrees or more, or the region has curves or edges that cross and is to
+/// turn in steps.
+pub(crate) fn lathe(region: &Region, turning: Turning) -> Result<Composite, ShapeError> {
     if region.pieces.iter().any(|p| crosses_axis(&p.curve(), 8)) {
         return Err(ShapeError::BadProfile(
             "reaches to the other side of the axis that it is turned about",
         ));
     }
+    let largest_step = turning.sweep / f64::from(turning.steps.unwrap_or(u32::MAX));
+    if !(turning.start.is_finite()
+        && turning.sweep > 0.0
+        && turning.sweep <= 360.0
+        && largest_step < 180.0)
+    {
+        return Err(ShapeError::BadProfile("is turned by no usable angle"));
+    }
     let [low, high] = region.bounds();
     let mut turned = Turned {
         heights: [low.y, high.y],
-        facets: facets.map(steps).unwrap_or_default(),
+        facets: turning.facets(),
         faces: Vec::new(),
     };
     let whole = Decomposition::new(region, WISHES);
     let is_line = |side: &PlaneSide| matches!(side, PlaneSide::Line(..));
-    if facets.is_some() && !whole.sides.iter().all(is_line) {
+    if turning.steps.is_some() && !whole.sides.iter().all(is_line) {
         return Err(ShapeError::BadProfile(
             "has curves or crossing edges, which cannot be turned in steps",
         ));
@@ -68,12 +131,26 @@ pub(crate) fn lathe(region: &Region, facets: Option<Facets>) -> Result<Composite
     for (normal, height) in [(DVec3::NEG_Z, low.y), (DVec3::Z, high.y)] {
         parts.push(turned.plane(normal, height));
     }
-    let reach = DVec2::splat(high.x);
+    if !turning.is_whole() {
+        let (from, to) = (turning.direction(0.0), turning.direction(1.0));
+        let ends = [-from.perp(), to.perp()].map(|normal| {
+            turned.push(CompositeFace::Plane {
+                normal: normal.extend(0.0),
+                point: DVec3::ZERO,
+            })
+        });
+        parts.push(if turning.sweep <= 180.0 {
+            Formula::all(ends)
+        } else {
+            Formula::any(ends)
+        });
+    }
+    let around = turning.bounds(low.x, high.x);
     Composite::new(
         CompositeKind::Lathe,
         turned.faces,
         Formula::all(parts),
-        Aabb::new((-reach).extend(low.y), reach.extend(high.y)),
+        Aabb::new(around[0].extend(low.y), around[1].extend(high.y)),
     )
 }
 
@@ -85,18 +162,6 @@ fn crosses_axis(curve: &Curve, halvings: u32) -> bool {
     let ends = curve.start().x < 0.0 || curve.end().x < 0.0;
     let halves = || curve.halves();
     ends || (halvings > 0 && halves().iter().any(|half| crosses_axis(half, halvings - 1)))
-}
-
-/// The outward normal of each facet, times the distance of its plane for a polygon with corners
-/// at distance 1.
-fn steps(facets: Facets) -> Vec<(DVec2, f64)> {
-    let (_, apothem) = transform::sin_cos_degrees(0.5 * facets.step);
-    let normal = |i: u32| {
-        let middle = facets.start + facets.step * (f64::from(i) + 0.5);
-        let (sin, cos) = transform::sin_cos_degrees(middle);
-        (DVec2::new(cos, sin), apothem)
-    };
-    (0..facets.count).map(normal).collect()
 }
 
 struct Turned {

@@ -3,7 +3,7 @@
 //! Drawing out, turning and set operations may be done in any order, so each flat shape becomes a
 //! solid of its own, and the operations on them are those on solids.
 
-use octray_geometry::profile::{Facets, Region};
+use octray_geometry::profile::{Region, Turning};
 use octray_geometry::{ShapeError, Solid};
 use octray_math::{DAffine3, DMat3, DVec3};
 
@@ -32,8 +32,8 @@ pub(super) struct Slab {
 pub(super) struct Turn {
     /// Where the shape lies in the plane.
     pub(super) place: DAffine3,
-    /// Straight steps, if it is not to be round.
-    pub(super) facets: Option<Facets>,
+    /// How far, and whether in straight steps.
+    pub(super) turning: Turning,
 }
 
 impl Drawing {
@@ -68,10 +68,7 @@ impl Drawing {
                 let Ok(half) = region.transformed(&turn.place).and_then(|r| r.right_half()) else {
                     return Ok(Solid::empty());
                 };
-                match turn.facets {
-                    Some(facets) => Solid::faceted_lathe(&half, facets),
-                    None => Solid::lathe(&half),
-                }
+                Solid::turned_lathe(&half, turn.turning)
             }
         }
     }

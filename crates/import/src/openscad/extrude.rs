@@ -1,7 +1,7 @@
 //! `linear_extrude` and `rotate_extrude`: flat shapes drawn out along z or turned about it.
 
 use octray_geometry::Solid;
-use octray_geometry::profile::Facets;
+use octray_geometry::profile::Turning;
 use octray_math::{DAffine3, DVec3};
 
 use super::arguments::Arguments;
@@ -92,60 +92,41 @@ impl Lowering<'_> {
         let start = arguments.number("start", self.diagnostics);
         let whole = angle == 360.0;
         // OpenSCAD begins on the negative x axis where it goes all the way round.
-        let mut start = start.unwrap_or(if whole { 180.0 } else { 0.0 });
+        let start = start.unwrap_or(if whole { 180.0 } else { 0.0 });
         let resolution = arguments.resolution(self.diagnostics);
         let mut turn = Turn {
             place: DAffine3::IDENTITY,
-            facets: None,
+            turning: Turning {
+                start: if angle < 0.0 { start + angle } else { start },
+                sweep: angle.abs(),
+                steps: None,
+            },
         };
+        if !turn.turning.start.is_finite() {
+            let message = "the start of a turn must be finite: it is empty";
+            self.diagnostics.warning(statement.span, message);
+            return Operand::Solid(Part::leaf(Solid::empty()));
+        }
         let mut solid = self.drawn(statement, around, Drawing::Turned(turn));
         // Shapes left of the axis are turned like those right of it.
         if matches!(&solid, Operand::Solid(part) if part.solid.bounds().is_empty()) {
             turn.place = DAffine3::from_scale(DVec3::new(-1.0, 1.0, 1.0));
-            start += 180.0;
+            turn.turning.start += 180.0;
             solid = self.drawn_quietly(statement, around, Drawing::Turned(turn));
         }
         let Operand::Solid(round) = &solid else {
             return solid;
         };
-        let bounds = round.solid.bounds();
         if resolution.is_explicit() || self.options.facets {
-            let fragments = resolution.fragments(bounds.max.x) as f64;
-            let count = (fragments * angle.abs() / 360.0).max(if whole { 3.0 } else { 1.0 });
-            let count = libm::floor(count);
-            turn.facets = Some(Facets {
-                start,
-                step: angle / count,
-                count: count as u32,
-            });
-            if angle < 0.0 {
-                turn.facets = Some(Facets {
-                    start: start + angle,
-                    step: -angle / count,
-                    count: count as u32,
-                });
-            }
+            let bounds = round.solid.bounds();
+            let reach = bounds.min.abs().max(bounds.max.abs()).truncate();
+            let fragments = resolution.fragments(reach.max_element()) as f64;
+            let least = if whole { 3.0 } else { angle.abs() / 120.0 };
+            let steps = libm::floor(fragments * angle.abs() / 360.0).max(libm::ceil(least));
+            turn.turning.steps = Some(steps as u32);
             solid = self.drawn_quietly(statement, around, Drawing::Turned(turn));
         }
-        let Operand::Solid(part) = solid else {
-            return solid;
-        };
-        if whole {
-            return Operand::Solid(part);
-        }
-        let (from, sweep) = if angle < 0.0 {
-            (start + angle, -angle)
-        } else {
-            (start, angle)
-        };
-        let depth = part.depth + 2;
-        match Solid::wedge(from, sweep) {
-            Ok(wedge) => Operand::Solid(Part {
-                solid: Solid::intersection([part.solid, wedge]),
-                depth,
-            }),
-            Err(_) => Operand::Solid(part),
-        }
+        solid
     }
 
     fn drawn(

@@ -36,7 +36,8 @@ impl Workshop<'_> {
             }
             Drawing::Turned(turn) => turn,
         };
-        let has_corners = resolution.is_explicit() || self.options.facets || turn.facets.is_some();
+        let has_corners =
+            resolution.is_explicit() || self.options.facets || turn.turning.steps.is_some();
         let outline = if has_corners {
             Outline::polygon(&circle(radius, fragments).collect::<Vec<_>>())
         } else {
@@ -100,7 +101,7 @@ impl Workshop<'_> {
     /// The solid of the region within the outlines.
     fn drawn(&mut self, span: Span, outlines: &[Outline], edges: usize, drawing: Drawing) -> Solid {
         let steps = match drawing {
-            Drawing::Turned(turn) => turn.facets.map_or(1, |facets| facets.count as usize),
+            Drawing::Turned(turn) => turn.turning.steps.map_or(1, |steps| steps as usize),
             Drawing::Out(_) => 1,
         };
         if !self
