@@ -29,9 +29,6 @@ pub(crate) fn primitive_name(primitive: &Primitive) -> &'static str {
             CompositeKind::Lathe => "lathe",
             CompositeKind::Polyhedron => "polyhedron",
         },
-        Primitive::Quadric(_) => "quadric",
-        Primitive::Polynomial { .. } => "polynomial",
-        Primitive::Superellipsoid { .. } => "superellipsoid",
         Primitive::Mesh(_) => "mesh",
     }
 }
