@@ -7,11 +7,13 @@
 //! Nothing here depends on another crate of ours, allocates per call, or can fail.
 
 mod aabb;
+pub mod bernstein;
 mod cell_key;
 mod hash;
 mod interval;
 mod ray;
 pub mod roots;
+pub mod symmetric;
 pub mod transform;
 
 pub use aabb::Aabb;

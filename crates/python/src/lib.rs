@@ -4,6 +4,7 @@
 mod arrays;
 mod background;
 mod camera;
+mod check;
 mod convert;
 mod describe;
 mod diagnostics;

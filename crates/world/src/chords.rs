@@ -42,6 +42,8 @@ pub struct ChordEnd {
     /// Whether the face belongs to another solid, which displaces this one: its outward normal
     /// points into the chord.
     pub displaced: bool,
+    /// Whether the ray enters the solid that the face belongs to.
+    pub entering: bool,
 }
 
 impl Chord {
@@ -151,7 +153,8 @@ impl World {
         let normal = || {
             let line = self.line(query, false)?;
             let point = self.place.scene_from_world(query.ray.at(end.t));
-            Some(self.solids.point(&line, end.face, point)?.normal)
+            let surface = self.solids.point(&line, end.face, end.entering, point)?;
+            Some(surface.normal)
         };
         if end.face == FaceId::NONE {
             return DVec3::ZERO;
@@ -202,13 +205,14 @@ fn collect(
     open.clear();
     let first = chords.len();
     list_visible(solids, overlaps, held, visible);
-    let ends = |s: f64, face: FaceId, displaced: bool| ChordEnd {
+    let without_face = |s: f64| ChordEnd {
         t: line.t(s),
-        face,
-        displaced,
+        face: FaceId::NONE,
+        displaced: false,
+        entering: false,
     };
-    let start = ends(line.origin, FaceId::NONE, false);
-    let never = ends(line.end, FaceId::NONE, false);
+    let start = without_face(line.origin);
+    let never = without_face(line.end);
     let begin = |rank: u32, enter: ChordEnd, chords: &mut Vec<Chord>| {
         let chord = chords.len();
         chords.push(Chord {
@@ -226,8 +230,13 @@ fn collect(
         // Where a solid begins or ends without a passage of its own, the first one's makes it so.
         let end = |rank: u32| {
             let own = group.iter().find(|p| p.rank == rank);
-            let face = own.unwrap_or(&group[0]).face;
-            ends(group[0].s, face, own.is_none())
+            let passage = own.unwrap_or(&group[0]);
+            ChordEnd {
+                t: line.t(passage.s),
+                face: passage.face,
+                displaced: own.is_none(),
+                entering: passage.entering,
+            }
         };
         list_visible(solids, overlaps, held, visible);
         open.retain(|o| {

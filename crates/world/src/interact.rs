@@ -59,7 +59,7 @@ impl World {
         let of_solid = || {
             line.as_ref().and_then(|line| {
                 let in_scene = self.place.scene_from_world(position);
-                self.solids.point(line, hit.face, in_scene)
+                self.solids.point(line, hit.face, hit.entering, in_scene)
             })
         };
         let TrianglePoint {

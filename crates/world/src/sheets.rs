@@ -157,5 +157,6 @@ impl Sheets {
         let part = self.part(triangle);
         part.placement
             .point(&part.mesh, triangle - part.first_triangle, &line.ray)
+            .map(|(point, _)| point)
     }
 }

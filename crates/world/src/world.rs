@@ -7,28 +7,18 @@ use octray_geometry::FaceId;
 use octray_geometry::mesh::MeshError;
 use octray_math::Aabb;
 use octray_scene::{Scene, Shape};
-use octray_tree::{CellTreeStats, Criteria, WideTreeConfig, WideTreeError, WideTreeStats};
+use octray_tree::{Criteria, PartitionStats, WideTreeConfig, WideTreeError, WideTreeStats};
 use thiserror::Error;
 
 use crate::line::{Line, Place};
 use crate::sheets::{SheetHit, Sheets};
 use crate::solids::{Interface, Scratch, Solids};
-use crate::{Counters, Hit, RayQuery, Region};
-
-/// How the nearest surface is found. The answers are the same bits.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Accel {
-    /// Octrees.
-    #[default]
-    Auto,
-    /// Every surface is tested with every ray: the oracle.
-    Brute,
-}
+use crate::{Accel, Counters, Hit, RayQuery, Region};
 
 /// How to prepare a world.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct WorldConfig {
-    /// Octrees or brute force.
+    /// How surfaces are found.
     pub accel: Accel,
     /// When to divide cells.
     pub criteria: Criteria,
@@ -80,8 +70,8 @@ pub struct WorldStats {
     pub faces: usize,
     /// Triangles of sheets.
     pub triangles: usize,
-    /// The octree over the solids.
-    pub cells: Option<CellTreeStats>,
+    /// The cells over the solids.
+    pub cells: Option<PartitionStats>,
     /// The octree over the triangles of sheets.
     pub triangle_tree: Option<WideTreeStats>,
 }
@@ -107,14 +97,15 @@ impl World {
     /// # Errors
     /// See [`WorldError`].
     pub fn prepare(scene: Arc<Scene>, config: &WorldConfig) -> Result<Self, WorldError> {
-        let accelerate = config.accel == Accel::Auto;
         if face_estimate(&scene) > 1 << 30 {
             return Err(WorldError::TooManyFaces);
         }
-        let criteria = accelerate.then_some(&config.criteria);
-        let triangles = accelerate.then_some(&config.triangles);
+        let triangles = match config.accel {
+            Accel::Brute => None,
+            _ => Some(&config.triangles),
+        };
         let place = Place::new(&scene.bounds());
-        let solids = Solids::prepare(&scene, &place.frame, criteria, triangles)
+        let solids = Solids::prepare(&scene, &place.frame, config, triangles)
             .map_err(|(object, error)| WorldError::Mesh { object, error })?;
         let sheets = Sheets::prepare(&scene, &place.frame, solids.face_count(), triangles)?;
         let opaque = scene
@@ -160,7 +151,7 @@ impl World {
             merged_surfaces: self.solids.merged_surfaces(),
             faces: self.solids.face_count() as usize + self.sheets.triangle_count(),
             triangles: self.sheets.triangle_count(),
-            cells: self.solids.tree_stats().cloned(),
+            cells: self.solids.partition_stats().cloned(),
             triangle_tree: self.sheets.triangles().tree_stats().copied(),
         }
     }

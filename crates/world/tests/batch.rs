@@ -3,7 +3,7 @@
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
-use octray_geometry::{FaceId, Sheet, Solid, TriangleMesh};
+use octray_geometry::{FaceId, MeshRule, Sheet, Solid, TriangleMesh};
 use octray_math::{DAffine3, DVec3};
 use octray_scene::{Material, Object, ObjectId, SceneBuilder, Shape};
 use octray_world::{BatchError, Counters, Overlaps, RayRow, Region, World, WorldConfig, row_query};
@@ -24,7 +24,7 @@ fn world() -> World {
     let solid = |solid: Solid| Object::solid("part", solid, material);
     let ball = Solid::sphere(2.0).expect("valid");
     let bore = Solid::cylinder(0.5, -3.0, 3.0).expect("valid");
-    let pyramid = Solid::mesh(tetrahedron()).expect("closed");
+    let pyramid = Solid::mesh(tetrahedron(), MeshRule::Strict).expect("closed");
     let bitten = Solid::difference(vec![pyramid.clone(), Solid::sphere(1.0).expect("valid")]);
     builder.add_object(solid(Solid::difference(vec![ball, bore])));
     builder.add_object(solid(pyramid.translate(DVec3::X).expect("finite")));

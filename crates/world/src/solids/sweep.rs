@@ -173,17 +173,16 @@ impl Solids {
     pub(super) fn sweep(
         &self,
         line: &Line,
-        leaf: u32,
+        view: &LeafView<'_>,
         span: Interval,
         mut limit: f64,
         scratch: &mut Scratch,
         counters: &mut Counters,
         visit: &mut impl FnMut(&Change<'_>) -> f64,
     ) -> f64 {
-        let view = self.leaves.get(leaf);
         scratch.events.clear();
         self.place(
-            &view,
+            view,
             line,
             span.start,
             scratch,
@@ -205,7 +204,7 @@ impl Solids {
             inside_after,
             ..
         } = scratch;
-        self.memberships(&view, negative, inside);
+        self.memberships(view, negative, inside);
         for group in events.chunk_by(|a, b| a.s == b.s) {
             if group[0].s > limit {
                 break;
@@ -213,10 +212,10 @@ impl Solids {
             for event in group {
                 negative[event.surface as usize] ^= true;
             }
-            if self.changes(&view, negative, inside, inside_after) {
+            if self.changes(view, negative, inside, inside_after) {
                 limit = limit.min(visit(&Change {
                     solids: self,
-                    view: &view,
+                    view,
                     group,
                     negative,
                     before: inside,

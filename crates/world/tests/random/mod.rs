@@ -1,9 +1,13 @@
 //! Random solids, coincident faces preferred: coordinates come from a coarse grid.
 
+mod profiles;
+
 use octray_geometry::Solid;
 use octray_geometry::surface::SURFACE_TOLERANCE;
-use octray_math::{DAffine3, DVec3, transform};
+use octray_math::{DAffine3, DVec2, DVec3, transform};
 use proptest::prelude::*;
+
+pub(crate) use profiles::{Profile, profile};
 
 /// A solid and, independently of it, a function that says which points are inside.
 #[derive(Clone, Debug)]
@@ -20,6 +24,9 @@ pub(crate) enum Recipe {
     Cylinder(f64, f64, f64),
     Cone(f64, f64, f64, f64),
     Torus(f64, f64),
+    /// A region drawn out between two heights, and turned about the axis.
+    Prism(Profile, f64, f64),
+    Lathe(Profile),
     Moved(Box<Recipe>, DAffine3),
     Union(Box<Recipe>, Box<Recipe>),
     Intersection(Box<Recipe>, Box<Recipe>),
@@ -43,6 +50,12 @@ impl Recipe {
                 signed((rho - r).max(slab(*z0, *z1)))
             }
             Self::Torus(major, minor) => signed(libm::hypot(rho - major, p.z) - minor),
+            Self::Prism(profile, z0, z1) => {
+                let (inside, margin) = profile.contains(p.truncate());
+                let (within, height) = signed(slab(*z0, *z1));
+                (inside && within, margin.min(height))
+            }
+            Self::Lathe(profile) => profile.contains(DVec2::new(rho, p.z)),
             Self::Moved(inner, m) => inner.contains(m.inverse().transform_point3(p)),
             Self::Complement(a) => {
                 let (inside, margin) = a.contains(p);
@@ -114,6 +127,8 @@ fn primitive() -> impl Strategy<Value = Model> {
             Recipe::Cone(r0, r1, z, z + h)
         }),
         (length(), length()).prop_map(|(major, minor)| Recipe::Torus(major, minor)),
+        (profile(false), grid(), length()).prop_map(|(p, z, h)| Recipe::Prism(p, z, z + h)),
+        profile(true).prop_map(Recipe::Lathe),
     ];
     recipe.prop_map(|recipe| {
         let solid = match &recipe {
@@ -122,6 +137,8 @@ fn primitive() -> impl Strategy<Value = Model> {
             Recipe::Cylinder(r, z0, z1) => Solid::cylinder(*r, *z0, *z1),
             Recipe::Cone(r0, r1, z0, z1) => Solid::cone(*r0, *r1, *z0, *z1),
             Recipe::Torus(major, minor) => Solid::torus(*major, *minor),
+            Recipe::Prism(profile, z0, z1) => Solid::prism(&profile.region, *z0, *z1),
+            Recipe::Lathe(profile) => Solid::lathe(&profile.region),
             _ => unreachable!("only primitives are made above"),
         };
         Model {
