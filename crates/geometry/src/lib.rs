@@ -18,7 +18,7 @@ mod solid;
 pub mod surface;
 
 pub use composite::{Composite, CompositeFace, CompositeKind};
-pub use frame::SceneFrame;
+pub use frame::{SceneFrame, finite_box};
 pub use identity::{FaceId, MaterialId, SurfaceId};
 pub use mesh::{CornerAttribute, MeshError, MeshRule, TriangleMesh};
 pub use polynomial::Polynomial;
