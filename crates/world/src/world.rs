@@ -102,7 +102,7 @@ impl World {
             Accel::Brute => None,
             _ => Some(&config.triangles),
         };
-        let place = Place::new(&scene.bounds());
+        let place = Place::new(&scene);
         let solids = Solids::prepare(&scene, &place.frame, config, triangles)
             .map_err(|(object, error)| WorldError::Mesh { object, error })?;
         let sheets = Sheets::prepare(&scene, &place.frame, solids.face_count(), triangles)?;
