@@ -5,8 +5,10 @@ use std::sync::Arc;
 use octray_math::{Aabb, DVec3};
 use thiserror::Error;
 
+use crate::Polynomial;
 use crate::composite::Composite;
 use crate::mesh::{MeshError, TriangleMesh};
+use crate::surface::QuadricForm;
 
 /// Why a shape cannot be made.
 #[derive(Clone, Debug, PartialEq, Error)]
@@ -36,6 +38,31 @@ pub enum ShapeError {
     /// A transform flattens space or is not finite.
     #[error("the transform is singular: it has no inverse")]
     SingularTransform,
+    /// A polynomial's degree is not one that is supported.
+    #[error("the degree must be 1 to {max}, not {0}", max = octray_math::roots::MAX_DEGREE)]
+    BadDegree(usize),
+    /// A polynomial has too few or too many coefficients.
+    #[error("a polynomial of degree {degree} has {expected} coefficients, not {given}")]
+    CoefficientCount {
+        /// How many there are.
+        given: usize,
+        /// The degree.
+        degree: usize,
+        /// How many there should be.
+        expected: usize,
+    },
+    /// A number lies outside of what is supported.
+    #[error("{what} must be from {low} to {high}, not {value}")]
+    OutOfRange {
+        /// The parameter.
+        what: &'static str,
+        /// What was given.
+        value: f64,
+        /// The least.
+        low: f64,
+        /// The most.
+        high: f64,
+    },
     /// The faces of a convex polyhedron enclose no bounded, full-dimensional region.
     #[error("the polyhedron is {0}")]
     BadPolyhedron(&'static str),
@@ -88,6 +115,20 @@ pub enum Primitive {
         major: f64,
         /// Radius of the tube, positive.
         minor: f64,
+    },
+    /// The negative side of a quadric in its own frame.
+    Quadric(QuadricForm),
+    /// The points at which a polynomial is negative.
+    Polynomial {
+        /// The function.
+        polynomial: Arc<Polynomial>,
+        /// A box around the points, unbounded where none is known.
+        bounds: Aabb,
+    },
+    /// `(|x|^(2/e) + |y|^(2/e))^(e/n) + |z|^(2/n) <= 1`.
+    Superellipsoid {
+        /// `[e, n]`: 1 is round, towards 0 square, 2 a rhombus, above 2 pinched.
+        exponents: [f64; 2],
     },
     /// The points with `normal . x <= offset`; `normal` has unit length.
     HalfSpace {
@@ -178,7 +219,12 @@ impl Primitive {
     #[must_use]
     pub fn face_count(&self) -> u64 {
         match self {
-            Self::Sphere { .. } | Self::Torus { .. } | Self::HalfSpace { .. } => 1,
+            Self::Sphere { .. }
+            | Self::Torus { .. }
+            | Self::Quadric(_)
+            | Self::Polynomial { .. }
+            | Self::Superellipsoid { .. }
+            | Self::HalfSpace { .. } => 1,
             Self::Box { .. } => 6,
             Self::Cylinder { .. } | Self::Cone { .. } => 3,
             Self::Convex(polyhedron) => polyhedron.planes.len() as u64,
@@ -207,7 +253,9 @@ impl Primitive {
                 let r = major + minor;
                 Aabb::new(DVec3::new(-r, -r, -minor), DVec3::new(r, r, *minor))
             }
-            Self::HalfSpace { .. } => Aabb::ALL,
+            Self::Polynomial { bounds, .. } => *bounds,
+            Self::Superellipsoid { .. } => Aabb::new(-DVec3::ONE, DVec3::ONE),
+            Self::Quadric(_) | Self::HalfSpace { .. } => Aabb::ALL,
             Self::Convex(polyhedron) => polyhedron.bounds(),
             Self::Composite(composite) => composite.bounds(),
             Self::Mesh(mesh) => mesh.bounds(),

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use octray_math::{Aabb, DAffine3, DVec3, transform};
 
 use crate::MaterialId;
-use crate::mesh::TriangleMesh;
+use crate::mesh::{MeshRule, TriangleMesh};
 use crate::polyhedron;
 use crate::primitive::{ConvexPolyhedron, Primitive, ShapeError};
 use crate::profile::{self, Region, Turning};
@@ -60,7 +60,7 @@ pub enum SolidNode {
     Complement(Solid),
 }
 
-fn finite(what: &'static str, value: f64) -> Result<f64, ShapeError> {
+pub(crate) fn finite(what: &'static str, value: f64) -> Result<f64, ShapeError> {
     if value.is_finite() {
         Ok(value)
     } else {
@@ -196,7 +196,7 @@ impl Solid {
         flat
     }
 
-    fn primitive(primitive: Primitive) -> Self {
+    pub(crate) fn primitive(primitive: Primitive) -> Self {
         SolidNode::Primitive(primitive).into()
     }
 
@@ -399,12 +399,13 @@ impl Solid {
         Ok(Self::primitive(Primitive::Composite(Arc::new(lathe))))
     }
 
-    /// The inside of a closed mesh.
+    /// The inside of a closed mesh: where its winding number is not 0.
     ///
     /// # Errors
-    /// The mesh is empty, open, non-manifold or not consistently oriented.
-    pub fn mesh(mesh: Arc<TriangleMesh>) -> Result<Self, ShapeError> {
-        mesh.check_closed()?;
+    /// The mesh does not comply with `rule` ([`TriangleMesh::check_solid`]): the error says what is
+    /// wrong and where.
+    pub fn mesh(mesh: Arc<TriangleMesh>, rule: MeshRule) -> Result<Self, ShapeError> {
+        mesh.check_solid(rule)?;
         Ok(Self::primitive(Primitive::Mesh(mesh)))
     }
 
@@ -506,12 +507,14 @@ impl Solid {
     /// primitives, so that nested rotations do not inflate the box at every level.
     #[must_use]
     pub fn bounds_in(&self, world_from_here: &DAffine3) -> Aabb {
-        let each = |solids: &[Self]| -> Vec<Aabb> {
-            solids
-                .iter()
-                .map(|s| s.bounds_in(world_from_here))
-                .collect()
-        };
+        self.enclosure_in(world_from_here, 0.0)
+    }
+
+    /// Like [`Solid::bounds_in`], but operands whose boxes are apart by up to `slack` still have an
+    /// intersection: where rounding moves boundaries by less, it cannot leave the box.
+    #[must_use]
+    pub fn enclosure_in(&self, world_from_here: &DAffine3, slack: f64) -> Aabb {
+        let of = |solid: &Self| solid.enclosure_in(world_from_here, slack);
         match self.node() {
             SolidNode::Empty => Aabb::EMPTY,
             SolidNode::Primitive(Primitive::Convex(polyhedron)) => Aabb::from_points(
@@ -524,20 +527,18 @@ impl Solid {
             SolidNode::Transformed {
                 child,
                 parent_from_child,
-            } => child.bounds_in(&(*world_from_here * *parent_from_child)),
-            SolidNode::WithMaterial { child, .. } => child.bounds_in(world_from_here),
-            SolidNode::Union(solids) => each(solids).into_iter().fold(Aabb::EMPTY, Aabb::union),
+            } => child.enclosure_in(&(*world_from_here * *parent_from_child), slack),
+            SolidNode::WithMaterial { child, .. } => of(child),
+            SolidNode::Union(solids) => solids.iter().map(of).fold(Aabb::EMPTY, Aabb::union),
             SolidNode::Intersection(solids) => {
-                let common = each(solids).into_iter().fold(Aabb::ALL, Aabb::intersection);
-                if common.is_empty() {
+                let common = solids.iter().map(of).fold(Aabb::ALL, Aabb::intersection);
+                if common.inflated(0.5 * slack).is_empty() {
                     Aabb::EMPTY
                 } else {
-                    common
+                    Aabb::new(common.min.min(common.max), common.max.max(common.min))
                 }
             }
-            SolidNode::Difference(solids) => solids
-                .first()
-                .map_or(Aabb::EMPTY, |first| first.bounds_in(world_from_here)),
+            SolidNode::Difference(solids) => solids.first().map_or(Aabb::EMPTY, of),
             SolidNode::Complement(_) => Aabb::ALL,
         }
     }

@@ -13,6 +13,7 @@ mod hash;
 mod interval;
 mod ray;
 pub mod roots;
+pub mod symmetric;
 pub mod transform;
 
 pub use aabb::Aabb;

@@ -1,6 +1,10 @@
 //! Real roots, found the way intersections need them: an even number of sign changes stays an
 //! even number, whatever the rounding.
 
+mod polynomial;
+
+pub use polynomial::{MAX_DEGREE, SignChangeList, sign_changes};
+
 /// The sign changes of `a t^2 + 2 b t + c`, in order, with the sign at `t = -inf`.
 ///
 /// Double roots, and roots that round to one, are no sign change. The form that avoids
@@ -67,6 +71,12 @@ impl SignChanges {
         }
         self.count = kept;
         self
+    }
+
+    /// Visits the changes, in order, and returns whether the value is negative before them.
+    pub fn report(&self, visit: impl FnMut(f64)) -> bool {
+        self.as_slice().iter().copied().for_each(visit);
+        self.starts_negative
     }
 
     /// The parameters at which the sign changes.

@@ -4,6 +4,7 @@
 mod arrays;
 mod background;
 mod camera;
+mod check;
 mod convert;
 mod describe;
 mod diagnostics;
@@ -42,15 +43,15 @@ mod _core {
     #[pymodule_export]
     use super::material::Material;
     #[pymodule_export]
-    use super::queries::Hits;
+    use super::queries::{Hits, Intersections};
     #[pymodule_export]
     use super::render::check_request;
     #[pymodule_export]
     use super::scene::Scene;
     #[pymodule_export]
     use super::solid::{
-        Solid, cone, cuboid, cylinder, difference, empty, half_space, intersection, mesh_solid,
-        polyhedron, sphere, torus, union,
+        Solid, cone, cubic, cuboid, cylinder, difference, empty, half_space, intersection,
+        mesh_solid, polyhedron, polynomial, quadric, quartic, sphere, superellipsoid, torus, union,
     };
 
     #[pymodule_export]

@@ -298,11 +298,66 @@ pub(crate) fn half_space(normal: &Bound<'_, PyAny>, d: f64) -> PyResult<Solid> {
     checked(octray::geometry::Solid::half_space(normal, d))
 }
 
+/// A quadric from ten numbers: the points where `a x^2 + b y^2 + c z^2 + d x y + e x z + f y z +
+/// g x + h y + i z + j <= 0`.
+///
+/// Ellipsoids, hyperboloids, paraboloids, cylinders, cones, pairs of planes, half-spaces: those that
+/// are also a sphere, cylinder, cone or plane are the same surface as that one.
+#[pyfunction]
+pub(crate) fn quadric(coefficients: Vec<f64>) -> PyResult<Solid> {
+    let given = coefficients.len();
+    let ten: [f64; 10] = coefficients.try_into().map_err(|_| {
+        PyValueError::new_err(format!("coefficients: expected 10 numbers, not {given}"))
+    })?;
+    checked(octray::geometry::Solid::quadric(ten))
+}
+
+/// The points where a polynomial of degree 3 is negative or 0: 20 coefficients, ordered as in
+/// `polynomial`.
+#[pyfunction]
+pub(crate) fn cubic(coefficients: Vec<f64>) -> PyResult<Solid> {
+    polynomial(3, coefficients)
+}
+
+/// The points where a polynomial of degree 4 is negative or 0: 35 coefficients, ordered as in
+/// `polynomial`.
+#[pyfunction]
+pub(crate) fn quartic(coefficients: Vec<f64>) -> PyResult<Solid> {
+    polynomial(4, coefficients)
+}
+
+/// The points where a polynomial in x, y and z of a degree up to 15 is negative or 0.
+///
+/// The `(n + 1)(n + 2)(n + 3) / 6` coefficients come by falling power of x, then of y, then of z:
+/// for degree 2 those of x^2, xy, xz, x, y^2, yz, y, z^2, z, 1.
+#[pyfunction]
+#[expect(
+    clippy::needless_pass_by_value,
+    reason = "arguments are converted into a value"
+)]
+pub(crate) fn polynomial(degree: usize, coefficients: Vec<f64>) -> PyResult<Solid> {
+    let polynomial = octray::geometry::Polynomial::new(degree, &coefficients);
+    checked(polynomial.and_then(octray::geometry::Solid::polynomial))
+}
+
+/// `(|x|^(2/e) + |y|^(2/e))^(e/n) + |z|^(2/n) <= 1`: round for e = n = 1, a box towards 0, an
+/// octahedron for 2, pinched above; from -1 to 1 on every axis.
+#[pyfunction]
+pub(crate) fn superellipsoid(e: f64, n: f64) -> PyResult<Solid> {
+    checked(octray::geometry::Solid::superellipsoid(e, n))
+}
+
 /// A polyhedron from its corners, shape (N, 3), and its plane faces: a list of lists of corner
 /// indices in order round the face, counter-clockwise seen from outside (either way round if it
-/// is convex).
+/// is convex). The rule is that of `mesh_solid`.
 #[pyfunction]
-pub(crate) fn polyhedron(vertices: &Bound<'_, PyAny>, faces: &Bound<'_, PyAny>) -> PyResult<Solid> {
+#[pyo3(signature = (vertices, faces, rule = "strict"))]
+pub(crate) fn polyhedron(
+    vertices: &Bound<'_, PyAny>,
+    faces: &Bound<'_, PyAny>,
+    rule: &str,
+) -> PyResult<Solid> {
+    let rule = mesh::rule(rule)?;
     let faces = mesh::polygons(faces)?;
     let vertices = mesh::positions(vertices)?;
     if let Ok(convex) = ConvexPolyhedron::from_faces(vertices.clone(), &faces) {
@@ -311,13 +366,23 @@ pub(crate) fn polyhedron(vertices: &Bound<'_, PyAny>, faces: &Bound<'_, PyAny>) 
         ))));
     }
     let mesh = mesh::triangulated(vertices, &faces)?;
-    checked(octray::geometry::Solid::mesh(mesh))
+    checked(octray::geometry::Solid::mesh(mesh, rule))
 }
 
 /// The inside of a closed triangle mesh whose triangles run counter-clockwise seen from outside.
+///
+/// With the rule `"strict"` every edge must have two triangles, and nothing may cross, overlap or
+/// face the wrong way: a `ValueError` says what is wrong where. With `"winding"` inside is where
+/// the winding number is not 0, whatever crosses or overlaps and however the mesh is turned; it
+/// must be closed.
 #[pyfunction]
-#[pyo3(signature = (vertices, faces))]
-pub(crate) fn mesh_solid(vertices: &Bound<'_, PyAny>, faces: &Bound<'_, PyAny>) -> PyResult<Solid> {
+#[pyo3(signature = (vertices, faces, rule = "strict"))]
+pub(crate) fn mesh_solid(
+    vertices: &Bound<'_, PyAny>,
+    faces: &Bound<'_, PyAny>,
+    rule: &str,
+) -> PyResult<Solid> {
+    let rule = mesh::rule(rule)?;
     let mesh: Arc<TriangleMesh> = mesh::from_arrays(vertices, faces)?;
-    checked(octray::geometry::Solid::mesh(mesh))
+    checked(octray::geometry::Solid::mesh(mesh, rule))
 }

@@ -5,8 +5,10 @@ use std::sync::Arc;
 use octray_math::DAffine3;
 
 use super::code::{Code, Constant, Operation, Writer};
+use super::facets;
+use crate::mesh::FacetPlanes;
 use crate::profile::Formula;
-use crate::surface::{Surface, SurfaceTable};
+use crate::surface::{NearPair, Surface, SurfaceTable};
 use crate::{
     Composite, FaceId, MaterialId, Primitive, SceneFrame, Solid, SolidNode, SurfaceId, TriangleMesh,
 };
@@ -30,6 +32,8 @@ pub struct MeshOperand {
     pub mesh: Arc<TriangleMesh>,
     /// Where it is.
     pub scene_from_mesh: DAffine3,
+    /// The planes that its triangles share with other operands.
+    pub planes: FacetPlanes,
 }
 
 /// An expression, or what it always is.
@@ -39,6 +43,7 @@ pub type Lowered = Result<Code, Constant>;
 #[derive(Debug)]
 pub struct Lowering {
     scene_from_world: DAffine3,
+    scene_size: f64,
     pub(super) table: SurfaceTable,
     faces: Vec<Face>,
     pub(super) meshes: Vec<MeshOperand>,
@@ -68,6 +73,7 @@ impl Lowering {
     pub fn new(frame: &SceneFrame) -> Self {
         Self {
             scene_from_world: frame.scene_from_world(),
+            scene_size: frame.size,
             table: SurfaceTable::new(frame.size, frame.largest()),
             faces: Vec::new(),
             meshes: Vec::new(),
@@ -93,6 +99,7 @@ impl Lowering {
     /// Faces, surfaces and mesh operands; the surface of mesh operand `i` is `surfaces.len() + i`.
     #[must_use]
     pub fn finish(self) -> (Vec<Face>, Vec<Surface>, Vec<MeshOperand>) {
+        let tolerance = self.table.tolerance() * self.scene_size;
         let surfaces = self.table.into_surfaces();
         let mut faces = self.faces;
         for face in &mut faces {
@@ -101,7 +108,9 @@ impl Lowering {
                 face.surface = SurfaceId(surfaces.len() as u32 + from_last);
             }
         }
-        (faces, surfaces, self.meshes)
+        let mut meshes = self.meshes;
+        facets::share_planes(&surfaces, &mut meshes, self.scene_size, tolerance);
+        (faces, surfaces, meshes)
     }
 
     /// How many faces there are so far.
@@ -114,6 +123,18 @@ impl Lowering {
     #[must_use]
     pub const fn merged_surfaces(&self) -> usize {
         self.table.merged()
+    }
+
+    /// How far surfaces may be apart to be one, in units of the scene's size.
+    #[must_use]
+    pub const fn tolerance(&self) -> f64 {
+        self.table.tolerance()
+    }
+
+    /// The surfaces so far that nearly coincide with an earlier one.
+    #[must_use]
+    pub fn near_pairs(&self) -> Vec<NearPair> {
+        self.table.near_pairs()
     }
 
     fn visit(&mut self, solid: &Solid, context: &Context, writer: &mut Writer) -> Option<Constant> {

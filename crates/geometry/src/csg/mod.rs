@@ -7,7 +7,9 @@
 //! of them change at once, and there is a boundary only where the expression changes.
 
 mod code;
+mod facets;
 mod lower;
+mod plane_index;
 mod sides;
 
 pub use code::{Code, Constant, changed_face, evaluate, faces, reduce, truth_on};

@@ -2,10 +2,11 @@
 
 use std::sync::Arc;
 
-use octray_math::{DAffine3, DVec3};
+use octray_math::{DAffine3, DMat3, DVec3};
 
 use super::lower::{FIRST_MESH, Lowering, MeshOperand};
-use crate::surface::{Canonical, Surface, points_upward};
+use crate::mesh::FacetPlanes;
+use crate::surface::{Canonical, QuadricForm, Surface, points_upward};
 use crate::{CompositeFace, Primitive, SurfaceId};
 
 impl Lowering {
@@ -51,6 +52,25 @@ impl Lowering {
                 let minor = minor / major;
                 vec![self.curved(Canonical::Torus { minor }, &frame)]
             }
+            Primitive::Quadric(QuadricForm::HyperbolicParaboloid)
+                if !points_upward(scene.matrix3.z_axis.normalize()) =>
+            {
+                // Upside down, and x for y, it is the same surface with its sides exchanged.
+                let turned = DMat3::from_cols(DVec3::Y, DVec3::X, DVec3::NEG_Z);
+                let frame = *scene * DAffine3::from_mat3(turned);
+                let form = Canonical::Quadric(QuadricForm::HyperbolicParaboloid);
+                let (surface, _) = self.curved(form, &frame);
+                vec![(surface, true)]
+            }
+            Primitive::Quadric(form) => vec![self.curved(Canonical::Quadric(*form), scene)],
+            Primitive::Polynomial { polynomial, .. } => {
+                let canonical = Canonical::Polynomial(Arc::clone(polynomial));
+                vec![self.curved(canonical, scene)]
+            }
+            Primitive::Superellipsoid { exponents } => {
+                let exponents = *exponents;
+                vec![self.curved(Canonical::Superellipsoid { exponents }, scene)]
+            }
             Primitive::HalfSpace { normal, offset } => {
                 vec![self.plane(scene, *normal, *normal * *offset)]
             }
@@ -67,6 +87,7 @@ impl Lowering {
             Primitive::Mesh(mesh) => {
                 let surface = SurfaceId(FIRST_MESH - self.meshes.len() as u32);
                 self.meshes.push(MeshOperand {
+                    planes: FacetPlanes::default(),
                     mesh: Arc::clone(mesh),
                     scene_from_mesh: *scene,
                 });

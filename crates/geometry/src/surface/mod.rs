@@ -9,9 +9,13 @@ mod extrusion;
 mod fingerprint;
 mod found;
 mod local_box;
+mod near;
 mod plane;
+mod polynomial;
+mod quadric;
 mod revolution;
 mod round;
+mod superellipsoid;
 mod table;
 #[cfg(test)]
 mod tests;
@@ -19,11 +23,14 @@ mod torus;
 
 use std::sync::Arc;
 
-use octray_math::roots::SignChanges;
 use octray_math::{Aabb, DAffine3, DVec3, Ray};
 
+use crate::Polynomial;
 use crate::profile::Contour;
 use local_box::LocalBox;
+pub use near::{NEAR, NearPair};
+pub(crate) use polynomial::range as polynomial_range;
+pub use quadric::QuadricForm;
 pub(crate) use table::points_upward;
 pub use table::{PLACE_TOLERANCE, SURFACE_TOLERANCE, SurfaceTable};
 #[cfg(test)]
@@ -68,6 +75,15 @@ pub enum Canonical {
         /// Minor radius over major radius.
         minor: f64,
     },
+    /// Another quadric.
+    Quadric(QuadricForm),
+    /// Where a polynomial is 0.
+    Polynomial(Arc<Polynomial>),
+    /// `(|x|^(2/e) + |y|^(2/e))^(e/n) + |z|^(2/n) = 1`.
+    Superellipsoid {
+        /// `[e, n]`: of the cross-section, and of the outline.
+        exponents: [f64; 2],
+    },
     /// A closed curve in the xy plane, drawn out along z without end.
     Extrusion(Arc<Contour>),
     /// A closed curve in the half-plane of the distance from the z axis (its x, never negative)
@@ -97,27 +113,17 @@ impl Surface {
     /// centre first (Haines et al., *Precision Improvements for Ray/Sphere Intersection*, Ray
     /// Tracing Gems, chapter 7): then the constant term is a distance, not a difference of large
     /// numbers.
-    pub fn crossings(&self, ray: &Ray, mut visit: impl FnMut(f64)) -> bool {
-        let changes = match self {
-            Self::Plane { normal, offset } => plane::crossings(*normal, *offset, ray),
+    pub fn crossings(&self, ray: &Ray, visit: impl FnMut(f64)) -> bool {
+        match self {
+            Self::Plane { normal, offset } => plane::crossings(*normal, *offset, ray).report(visit),
             Self::Curved {
                 canonical,
                 local_from_scene,
             } => {
                 let Ray { origin, direction } = ray.transformed(local_from_scene);
-                match canonical {
-                    Canonical::Extrusion(contour) => {
-                        return extrusion::crossings(contour, origin, direction, &mut visit);
-                    }
-                    Canonical::Revolution(contour) => {
-                        return revolution::crossings(contour, origin, direction, &mut visit);
-                    }
-                    _ => canonical.crossings(origin, direction),
-                }
+                canonical.crossings(origin, direction, visit)
             }
-        };
-        changes.as_slice().iter().for_each(|&t| visit(t));
-        changes.starts_negative
+        }
     }
 
     /// The side on which all of a bounded box lies. [`Side::Both`] too often, never too seldom.
@@ -161,15 +167,27 @@ impl Surface {
 
 impl Canonical {
     /// See [`Surface::crossings`]; the line in the local frame.
-    fn crossings(&self, origin: DVec3, direction: DVec3) -> SignChanges {
-        match self {
+    fn crossings(&self, origin: DVec3, direction: DVec3, mut visit: impl FnMut(f64)) -> bool {
+        let changes = match self {
             Self::Sphere => round::sphere(origin, direction),
             Self::Cylinder => round::cylinder(origin, direction),
             Self::Cone { slope } => cone::crossings(*slope, origin, direction),
             Self::Torus { minor } => torus::crossings(*minor, origin, direction),
-            // They may have any number of crossings: see `Surface::crossings`.
-            Self::Extrusion(_) | Self::Revolution(_) => SignChanges::none(false),
-        }
+            Self::Quadric(form) => quadric::crossings(*form, origin, direction),
+            Self::Polynomial(polynomial) => {
+                return polynomial::crossings(polynomial, origin, direction).report(visit);
+            }
+            Self::Superellipsoid { exponents } => {
+                return superellipsoid::crossings(*exponents, origin, direction).report(visit);
+            }
+            Self::Extrusion(contour) => {
+                return extrusion::crossings(contour, origin, direction, &mut visit);
+            }
+            Self::Revolution(contour) => {
+                return revolution::crossings(contour, origin, direction, &mut visit);
+            }
+        };
+        changes.report(visit)
     }
 
     fn classify(&self, local: &LocalBox) -> Side {
@@ -178,6 +196,9 @@ impl Canonical {
             Self::Cylinder => round::classify(round::CYLINDER, local),
             Self::Cone { slope } => cone::classify(*slope, local),
             Self::Torus { minor } => torus::classify(*minor, local),
+            Self::Quadric(form) => quadric::classify(*form, local),
+            Self::Polynomial(polynomial) => polynomial::classify(polynomial, local),
+            Self::Superellipsoid { exponents } => superellipsoid::classify(*exponents, local),
             Self::Extrusion(contour) => extrusion::classify(contour, local),
             Self::Revolution(contour) => revolution::classify(contour, local),
         }
@@ -191,6 +212,9 @@ impl Canonical {
             Self::Cylinder => p * round::CYLINDER,
             Self::Cone { slope } => cone::gradient(*slope, p),
             Self::Torus { .. } => torus::gradient(p),
+            Self::Quadric(form) => quadric::gradient(*form, p),
+            Self::Polynomial(polynomial) => polynomial::gradient(polynomial, p),
+            Self::Superellipsoid { exponents } => superellipsoid::gradient(*exponents, p),
             Self::Extrusion(contour) => extrusion::gradient(contour, p),
             Self::Revolution(contour) => revolution::gradient(contour, p),
         }
@@ -199,8 +223,10 @@ impl Canonical {
     fn cost(&self) -> f64 {
         match self {
             Self::Sphere | Self::Cylinder => 2.0,
-            Self::Cone { .. } => 3.0,
+            Self::Cone { .. } | Self::Quadric(_) => 3.0,
             Self::Torus { .. } => 5.0,
+            Self::Polynomial(_) => 20.0,
+            Self::Superellipsoid { .. } => 40.0,
             Self::Extrusion(contour) => 2.0 + 2.0 * contour.curves().len() as f64,
             Self::Revolution(contour) => 5.0 + 5.0 * contour.curves().len() as f64,
         }

@@ -22,7 +22,20 @@ struct Slabs {
     origin: DVec3,
     inverse: DVec3,
     parallel: [bool; 3],
+    /// Whether the line goes down the axis.
+    backward: [bool; 3],
     margin: f64,
+}
+
+/// The larger of two numbers, and the smaller, where neither is NaN: one instruction each.
+#[inline]
+fn later(a: f64, b: f64) -> f64 {
+    if a > b { a } else { b }
+}
+
+#[inline]
+fn earlier(a: f64, b: f64) -> f64 {
+    if a < b { a } else { b }
 }
 
 impl Slabs {
@@ -39,7 +52,11 @@ impl Slabs {
             return Interval::ALL;
         }
         let (a, b) = (low * self.inverse[axis], high * self.inverse[axis]);
-        Interval::new(a.min(b), a.max(b))
+        if self.backward[axis] {
+            Interval::new(b, a)
+        } else {
+            Interval::new(a, b)
+        }
     }
 
     /// The part of `within` inside the cube grown by the margin.
@@ -49,14 +66,34 @@ impl Slabs {
         })
     }
 
-    /// The slabs of a divided cell's lower and upper children on each axis: eight cubes of `size`
-    /// share six of them.
+    /// The slabs of a divided cell's halves on one axis, each with the number of the half, the one
+    /// that the line enters last first.
     #[inline]
-    fn halves(&self, min: DVec3, size: f64) -> [[Interval; 2]; 3] {
-        std::array::from_fn(|axis| {
-            [min[axis], min[axis] + size].map(|low| self.slab(axis, low, size))
-        })
+    fn halves(&self, axis: usize, min: f64, size: f64) -> [Half; 2] {
+        let half = |upper: usize| {
+            let min = if upper == 1 { min + size } else { min };
+            let Interval { start, end } = self.slab(axis, min, size);
+            Half {
+                start,
+                end,
+                min,
+                upper,
+            }
+        };
+        let near = usize::from(self.backward[axis]);
+        [half(1 - near), half(near)]
     }
+}
+
+/// Half of a divided cell on one axis.
+#[derive(Clone, Copy)]
+struct Half {
+    /// Where the line enters and leaves it.
+    start: f64,
+    end: f64,
+    /// Its lower side.
+    min: f64,
+    upper: usize,
 }
 
 impl CellTree {
@@ -80,9 +117,9 @@ impl CellTree {
             // A reciprocal that overflows is as good as parallel: the line leaves the slab beyond
             // any parameter that matters.
             parallel: d.to_array().map(|x| !x.recip().is_finite()),
+            backward: d.to_array().map(|x| x < 0.0),
             margin: self.root.size().x * (0.5 * Self::CONTENT_MARGIN),
         };
-        let mirror = u32::from(d.x < 0.0) | u32::from(d.y < 0.0) << 1 | u32::from(d.z < 0.0) << 2;
         let mut limit = within.end;
         let mut entered = 0;
         let span = slabs.clip(self.root.min, self.root.size().x, within);
@@ -108,29 +145,32 @@ impl CellTree {
                 Node::Divided(block) => {
                     let size = cell.size * 0.5;
                     let children = &self.blocks[block as usize];
-                    let [x, y, z] = slabs.halves(cell.min, size);
-                    // The farthest octant is pushed first.
-                    for i in (0..8).rev() {
-                        let octant = i ^ mirror;
-                        let node = children[octant as usize];
-                        if matches!(Node::decode(node), Node::Empty(_)) {
-                            continue;
-                        }
-                        let upper = [octant & 1, octant >> 1 & 1, octant >> 2 & 1];
-                        let span = cell
-                            .span
-                            .intersection(&x[upper[0] as usize])
-                            .intersection(&y[upper[1] as usize])
-                            .intersection(&z[upper[2] as usize]);
-                        if !span.is_empty() {
-                            let min = cell.min + DVec3::from_array(upper.map(f64::from)) * size;
-                            stack.push(Waiting {
-                                node,
-                                min,
-                                size,
-                                span,
-                            });
-                        }
+                    let x = slabs.halves(0, cell.min.x, size);
+                    let y = slabs.halves(1, cell.min.y, size);
+                    let z = slabs.halves(2, cell.min.z, size);
+                    // Which octants the line meets nobody can guess, so all are decided without
+                    // a branch. Octants are numbered from the last that the line enters.
+                    let mut spans = [Interval::EMPTY; 8];
+                    let mut met = 0_u32;
+                    for octant in 0..8 {
+                        let (x, y, z) = (&x[octant & 1], &y[octant >> 1 & 1], &z[octant >> 2]);
+                        let start = later(later(cell.span.start, z.start), later(y.start, x.start));
+                        let end = earlier(earlier(cell.span.end, z.end), earlier(y.end, x.end));
+                        let node = children[x.upper | y.upper << 1 | z.upper << 2];
+                        spans[octant] = Interval { start, end };
+                        let is_met = (start <= end) & !Node::is_empty(node);
+                        met |= u32::from(is_met) << octant;
+                    }
+                    while met != 0 {
+                        let octant = met.trailing_zeros() as usize;
+                        met &= met - 1;
+                        let (x, y, z) = (&x[octant & 1], &y[octant >> 1 & 1], &z[octant >> 2]);
+                        stack.push(Waiting {
+                            node: children[x.upper | y.upper << 1 | z.upper << 2],
+                            min: DVec3::new(x.min, y.min, z.min),
+                            size,
+                            span: spans[octant],
+                        });
                     }
                 }
             }

@@ -1,6 +1,6 @@
 //! A decided box lies on its side.
 
-use super::implicit_value;
+use super::{implicit, implicit_value};
 use crate::surface::{Canonical, Side, Surface};
 use octray_math::{Aabb, DAffine3, DVec3};
 use proptest::prelude::*;
@@ -16,7 +16,8 @@ fn surface() -> impl Strategy<Value = Surface> {
             * DAffine3::from_rotation_y(axis.y)
             * DAffine3::from_translation(shift)
     });
-    (0..5, frame, 0.01..2.0f64).prop_map(|(which, local_from_scene, minor)| {
+    let shape = (0..5, 0.01..2.0f64, implicit());
+    (shape, frame).prop_map(|((which, minor, implicit), local_from_scene)| {
         let canonical = match which {
             0 => Canonical::Sphere,
             1 => Canonical::Cylinder,
@@ -24,6 +25,7 @@ fn surface() -> impl Strategy<Value = Surface> {
                 slope: -0.5 * minor,
             },
             3 => Canonical::Torus { minor },
+            4 if minor > 0.5 => implicit,
             _ => {
                 return Surface::Plane {
                     normal: local_from_scene.matrix3.x_axis.normalize(),
