@@ -71,6 +71,15 @@ def test_t_counts_in_units_of_the_direction(scale: float) -> None:
         (lambda: octray.cone(2, 1, 4, center=False), 4.0),
         (lambda: octray.torus(math.hypot(0.3, 0.2), 0.25), 0.25),
         (lambda: octray.half_space((0, 0, 2), 1.5), 1.5),
+        # x^2 + y^2 + z = 3, as seen from above at (0.3, 0.2).
+        (lambda: octray.quadric([1, 1, 0, 0, 0, 0, 0, 0, 1, -3]), 3 - 0.13),
+        (lambda: octray.polynomial(2, [1, 0, 0, 0, 1, 0, 0, 0, 1, -3]), 3 - 0.13),
+        # z^3 = 8 + x y: 20 coefficients, x y is the seventh, z^3 the seventeenth.
+        (lambda: octray.cubic([0] * 6 + [-1] + [0] * 9 + [1, 0, 0, -8]), 8.06 ** (1 / 3)),
+        # z^4 = 16.
+        (lambda: octray.quartic([0] * 30 + [1, 0, 0, 0, -16]), 2.0),
+        (lambda: octray.superellipsoid(2, 2), 0.5),
+        (lambda: octray.superellipsoid(1, 0.5), (1 - 0.13**2) ** 0.25),
         (lambda: octray.sphere(2).scale((1, 1, 0.5)), math.sqrt(4 - 0.13) / 2),
         (lambda: octray.box(2).translate(z=5), 6.0),
         (lambda: octray.box((2, 4, 6)).rotate(x=90), 2.0),
@@ -144,6 +153,15 @@ def test_a_closed_mesh_is_a_solid_and_a_convex_one_is_a_polyhedron() -> None:
         assert count(solid - octray.box(0.5).translate(0.3, 0.2, 2), DOWN) == 4
 
 
+def test_a_quadric_is_the_solid_of_the_same_shape() -> None:
+    # (x - 1)^2 + y^2 + z^2 = 4: nothing is left of the one without the other.
+    ball = octray.quadric([1, 1, 1, 0, 0, 0, -2, 0, 0, -3])
+    assert ball.bounds == ((-1, -2, -2), (3, 2, 2))
+    same = octray.sphere(2).translate(x=1)
+    assert count(ball - same, DOWN) == count(same - ball, DOWN) == 0
+    assert count(ball, DOWN) == 2
+
+
 def test_a_polyhedron_may_have_dents() -> None:
     # An L of height 1 over (0, 0), (3, 0), (3, 1), (1, 1), (1, 3), (0, 3).
     outline = [(0, 0), (3, 0), (3, 1), (1, 1), (1, 3), (0, 3)]
@@ -198,6 +216,11 @@ def test_meshes_that_cross_are_taken_by_winding_number_on_request() -> None:
         (lambda: octray.cone(0, 0, 1), "largest radius must be greater than 0"),
         (lambda: octray.torus(1, -1), "minor radius must be greater than 0"),
         (lambda: octray.half_space((0, 0, 0)), "normal must not be the zero vector"),
+        (lambda: octray.quadric([1, 2]), "expected 10 numbers, not 2"),
+        (lambda: octray.quadric([math.inf] * 10), "coefficient must be finite"),
+        (lambda: octray.quartic([1] * 34), "35 coefficients, not 34"),
+        (lambda: octray.polynomial(16, [1]), "degree must be 1 to 15, not 16"),
+        (lambda: octray.superellipsoid(0, 1), "exponent e must be from"),
         (lambda: octray.sphere(1).scale(0), "no inverse"),
         (lambda: octray.sphere(1).translate(x=math.nan), "no inverse"),
         (lambda: octray.sphere(1).mirror((0, 0, 0)), "normal must not be the zero vector"),

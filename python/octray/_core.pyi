@@ -30,6 +30,7 @@ __all__ = [
     "check_request",
     "cone",
     "cpu_features",
+    "cubic",
     "cylinder",
     "default_threads",
     "difference",
@@ -39,7 +40,11 @@ __all__ = [
     "load",
     "mesh_solid",
     "polyhedron",
+    "polynomial",
+    "quadric",
+    "quartic",
     "sphere",
+    "superellipsoid",
     "torus",
     "union",
 ]
@@ -107,6 +112,11 @@ def cylinder(r: float, h: float, center: bool = True) -> Solid: ...
 def cone(r1: float, r2: float, h: float, center: bool = True) -> Solid: ...
 def torus(R: float, r: float) -> Solid: ...  # noqa: N803 - what everyone calls it
 def half_space(normal: _Vector, d: float = 0.0) -> Solid: ...
+def quadric(coefficients: Sequence[float]) -> Solid: ...
+def cubic(coefficients: Sequence[float]) -> Solid: ...
+def quartic(coefficients: Sequence[float]) -> Solid: ...
+def polynomial(degree: int, coefficients: Sequence[float]) -> Solid: ...
+def superellipsoid(e: float, n: float) -> Solid: ...
 def polyhedron(
     vertices: npt.ArrayLike,
     faces: Iterable[Iterable[SupportsIndex]],

@@ -1,5 +1,6 @@
 //! Solids given by a formula: quadrics, polynomials, superellipsoids.
 
+mod bounds;
 mod quadric;
 
 use std::sync::Arc;
@@ -27,13 +28,18 @@ impl Solid {
     }
 
     /// The points where a polynomial is negative: of degree 3 or 4, a cubic or quartic solid.
-    /// Bounded or not: intersect it with a box where only a part of it is meant.
+    /// Bounded or not: intersect it with a box where only a part of it is meant. Where the terms of
+    /// the highest degree alone make it positive far away, as for a torus, a box round it is found.
     ///
     /// # Errors
     /// The polynomial is that of a plane too far away for its distance to be a number.
     pub fn polynomial(polynomial: Polynomial) -> Result<Self, ShapeError> {
         if polynomial.degree() > 2 {
-            return Ok(Self::polynomial_within(polynomial, Aabb::ALL));
+            let bounds = bounds::of_negative_points(&polynomial);
+            if bounds.is_empty() {
+                return Ok(Self::empty());
+            }
+            return Ok(Self::polynomial_within(polynomial, bounds));
         }
         let mut quadric = [0.0; 10];
         for (powers, &c) in powers(polynomial.degree()).zip(polynomial.coefficients()) {

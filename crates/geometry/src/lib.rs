@@ -10,6 +10,8 @@ mod frame;
 mod identity;
 mod implicit;
 pub mod mesh;
+pub mod polygon;
+mod polyhedron;
 mod polynomial;
 mod primitive;
 pub mod profile;

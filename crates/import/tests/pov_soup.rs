@@ -23,7 +23,7 @@ fn check(bytes: Vec<u8>) {
     }
 }
 
-const WORDS: [&str; 112] = [
+const WORDS: [&str; 117] = [
     "#declare",
     "#local",
     "#undef",
@@ -102,6 +102,11 @@ const WORDS: [&str; 112] = [
     "vertex_vectors",
     "face_indices",
     "quadric",
+    "quartic",
+    "poly",
+    "polynomial",
+    "xyz",
+    "superellipsoid",
     "blob",
     "union",
     "difference",

@@ -13,7 +13,7 @@ use octray::world::{World, WorldConfig};
 
 /// A scene, and how near its picture comes: the mean absolute difference in per cent, and the
 /// share of the reference's edge pixels near one of ours in per cent, as measured.
-const SCENES: [(&str, f64, f64); 13] = [
+const SCENES: [(&str, f64, f64); 15] = [
     ("advanced/lamppost", 0.156, 99.68),
     ("advanced/swirlbox", 0.455, 99.65),
     ("camera/focalblur", 1.289, 98.57),
@@ -27,6 +27,8 @@ const SCENES: [(&str, f64, f64); 13] = [
     ("objects/lathe1a", 0.000, 100.0),
     ("objects/polygon", 0.000, 100.0),
     ("objects/prism3a", 0.000, 100.0),
+    ("objects/quartic/teardrop", 0.000, 100.0),
+    ("objects/superel1", 0.000, 100.0),
 ];
 
 /// 8-bit pixels, row by row from the top.

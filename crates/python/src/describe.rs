@@ -19,6 +19,9 @@ pub(crate) fn primitive_name(primitive: &Primitive) -> &'static str {
         Primitive::Cylinder { .. } => "cylinder",
         Primitive::Cone { .. } => "cone",
         Primitive::Torus { .. } => "torus",
+        Primitive::Quadric(_) => "quadric",
+        Primitive::Polynomial { .. } => "polynomial",
+        Primitive::Superellipsoid { .. } => "superellipsoid",
         Primitive::HalfSpace { .. } => "half_space",
         Primitive::Convex(_) => "polyhedron",
         Primitive::Composite(composite) => match composite.kind() {
@@ -26,9 +29,6 @@ pub(crate) fn primitive_name(primitive: &Primitive) -> &'static str {
             CompositeKind::Lathe => "lathe",
             CompositeKind::Polyhedron => "polyhedron",
         },
-        Primitive::Quadric(_) => "quadric",
-        Primitive::Polynomial { .. } => "polynomial",
-        Primitive::Superellipsoid { .. } => "superellipsoid",
         Primitive::Mesh(_) => "mesh",
     }
 }

@@ -50,8 +50,8 @@ mod _core {
     use super::scene::Scene;
     #[pymodule_export]
     use super::solid::{
-        Solid, cone, cuboid, cylinder, difference, empty, half_space, intersection, mesh_solid,
-        polyhedron, sphere, torus, union,
+        Solid, cone, cubic, cuboid, cylinder, difference, empty, half_space, intersection,
+        mesh_solid, polyhedron, polynomial, quadric, quartic, sphere, superellipsoid, torus, union,
     };
 
     #[pymodule_export]

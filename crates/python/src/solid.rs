@@ -298,6 +298,55 @@ pub(crate) fn half_space(normal: &Bound<'_, PyAny>, d: f64) -> PyResult<Solid> {
     checked(octray::geometry::Solid::half_space(normal, d))
 }
 
+/// A quadric from ten numbers: the points where `a x^2 + b y^2 + c z^2 + d x y + e x z + f y z +
+/// g x + h y + i z + j <= 0`.
+///
+/// Ellipsoids, hyperboloids, paraboloids, cylinders, cones, pairs of planes, half-spaces: those that
+/// are also a sphere, cylinder, cone or plane are the same surface as that one.
+#[pyfunction]
+pub(crate) fn quadric(coefficients: Vec<f64>) -> PyResult<Solid> {
+    let given = coefficients.len();
+    let ten: [f64; 10] = coefficients.try_into().map_err(|_| {
+        PyValueError::new_err(format!("coefficients: expected 10 numbers, not {given}"))
+    })?;
+    checked(octray::geometry::Solid::quadric(ten))
+}
+
+/// The points where a polynomial of degree 3 is negative or 0: 20 coefficients, ordered as in
+/// `polynomial`.
+#[pyfunction]
+pub(crate) fn cubic(coefficients: Vec<f64>) -> PyResult<Solid> {
+    polynomial(3, coefficients)
+}
+
+/// The points where a polynomial of degree 4 is negative or 0: 35 coefficients, ordered as in
+/// `polynomial`.
+#[pyfunction]
+pub(crate) fn quartic(coefficients: Vec<f64>) -> PyResult<Solid> {
+    polynomial(4, coefficients)
+}
+
+/// The points where a polynomial in x, y and z of a degree up to 15 is negative or 0.
+///
+/// The `(n + 1)(n + 2)(n + 3) / 6` coefficients come by falling power of x, then of y, then of z:
+/// for degree 2 those of x^2, xy, xz, x, y^2, yz, y, z^2, z, 1.
+#[pyfunction]
+#[expect(
+    clippy::needless_pass_by_value,
+    reason = "arguments are converted into a value"
+)]
+pub(crate) fn polynomial(degree: usize, coefficients: Vec<f64>) -> PyResult<Solid> {
+    let polynomial = octray::geometry::Polynomial::new(degree, &coefficients);
+    checked(polynomial.and_then(octray::geometry::Solid::polynomial))
+}
+
+/// `(|x|^(2/e) + |y|^(2/e))^(e/n) + |z|^(2/n) <= 1`: round for e = n = 1, a box towards 0, an
+/// octahedron for 2, pinched above; from -1 to 1 on every axis.
+#[pyfunction]
+pub(crate) fn superellipsoid(e: f64, n: f64) -> PyResult<Solid> {
+    checked(octray::geometry::Solid::superellipsoid(e, n))
+}
+
 /// A polyhedron from its corners, shape (N, 3), and its plane faces: a list of lists of corner
 /// indices in order round the face, counter-clockwise seen from outside (either way round if it
 /// is convex). The rule is that of `mesh_solid`.

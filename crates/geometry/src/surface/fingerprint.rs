@@ -60,7 +60,6 @@ fn curved(
             2
         }
         Canonical::Cone { slope } => cone(center, &axes, [1.0, *slope], numbers),
-        Canonical::Quadric(QuadricForm::DoubleCone) => cone(center, &axes, [0.0, 1.0], numbers),
         Canonical::Quadric(form) => quadric(*form, center, &axes, numbers),
         Canonical::Polynomial(polynomial) => {
             // Coefficients mean no lengths: they are the same to the bit or another surface, while
@@ -146,7 +145,13 @@ fn quadric(form: QuadricForm, center: DVec3, axes: &DMat3, numbers: &mut Vec<f64
     let dyad = |v: DVec3, k: f64| DMat3::from_cols(v * v.x, v * v.y, v * v.z) * k;
     let form_matrix = dyad(rows.x_axis, squares.x) + dyad(rows.y_axis, squares.y);
     match form {
-        QuadricForm::OneSheet | QuadricForm::TwoSheets | QuadricForm::DoubleCone => {
+        QuadricForm::DoubleCone => {
+            // Of the many frames in which it has its form, that of its own axes.
+            let (values, own) = symmetric::eigen(&(form_matrix + dyad(rows.z_axis, squares.z)));
+            let [z, x, y] = [0, 1, 2].map(|i| own.col(i) / values[i].abs().sqrt());
+            cone(center, &DMat3::from_cols(x, y, z), [0.0, 1.0], numbers)
+        }
+        QuadricForm::OneSheet | QuadricForm::TwoSheets => {
             let axes = half_axes(&(form_matrix + dyad(rows.z_axis, squares.z)));
             numbers.extend(center.to_array());
             numbers.extend(symmetric_entries(&axes));

@@ -29,6 +29,7 @@ use crate::Polynomial;
 use crate::profile::Contour;
 use local_box::LocalBox;
 pub use near::{NEAR, NearPair};
+pub(crate) use polynomial::range as polynomial_range;
 pub use quadric::QuadricForm;
 pub(crate) use table::points_upward;
 pub use table::{PLACE_TOLERANCE, SURFACE_TOLERANCE, SurfaceTable};

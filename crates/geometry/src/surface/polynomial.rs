@@ -1,7 +1,7 @@
 //! Algebraic surfaces in the frame of their polynomial.
 
-use octray_math::DVec3;
 use octray_math::roots::SignChangeList;
+use octray_math::{Aabb, DAffine3, DVec3};
 
 use super::Side;
 use super::local_box::{LocalBox, decide};
@@ -17,9 +17,23 @@ pub(super) fn crossings(polynomial: &Polynomial, o: DVec3, d: DVec3) -> SignChan
     changes.moved(closest / length, 1.0 / length)
 }
 
+pub(super) fn classify(polynomial: &Polynomial, local: &LocalBox) -> Side {
+    let (low, high, magnitude) = enclosure(polynomial, local);
+    if low.is_finite() && high.is_finite() {
+        decide(low, high, magnitude)
+    } else {
+        Side::Both
+    }
+}
+
+/// Least and greatest value in a box, but for rounding of the magnitude that comes third.
+pub(crate) fn range(polynomial: &Polynomial, bounds: &Aabb) -> (f64, f64, f64) {
+    enclosure(polynomial, &LocalBox::new(bounds, &DAffine3::IDENTITY))
+}
+
 /// By the Taylor polynomial of second order at the centre; what it leaves out is at most what the
 /// polynomial of absolute values leaves out there.
-pub(super) fn classify(polynomial: &Polynomial, local: &LocalBox) -> Side {
+fn enclosure(polynomial: &Polynomial, local: &LocalBox) -> (f64, f64, f64) {
     let (center, reach) = (local.center, local.reach);
     let jet = polynomial.jet(center);
     let products = DVec3::new(reach.y * reach.z, reach.z * reach.x, reach.x * reach.y);
@@ -30,10 +44,7 @@ pub(super) fn classify(polynomial: &Polynomial, local: &LocalBox) -> Side {
     let rest = most - above.value - above.gradient.dot(reach) - second(above.squares, above.mixed);
     let spread =
         local.linear(jet.gradient) + second(jet.squares.abs(), jet.mixed.abs()) + rest.max(0.0);
-    if !(spread.is_finite() && most.is_finite()) {
-        return Side::Both;
-    }
-    decide(jet.value - spread, jet.value + spread, most)
+    (jet.value - spread, jet.value + spread, most)
 }
 
 pub(super) fn gradient(polynomial: &Polynomial, p: DVec3) -> DVec3 {

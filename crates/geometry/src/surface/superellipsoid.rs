@@ -24,6 +24,9 @@ struct Shape {
 /// Pieces of the line are divided at most this often: then they are as short as rounding.
 const MAX_DEPTH: u32 = 60;
 
+/// And into at most this many: a hundred are many for a line that grazes.
+const MAX_SAMPLES: u32 = 2000;
+
 impl Shape {
     const fn new(exponents: [f64; 2]) -> Self {
         Self {
@@ -143,16 +146,46 @@ impl Octant {
         }
     }
 
-    /// Whether `r - w` is certainly not 0 between two samples.
+    /// How wrong `r - w` may be.
+    fn rounding(&self, sample: &Sample) -> f64 {
+        let Shape { a, c } = self.shape;
+        4.0 * f64::EPSILON * (1.0 + 1.0 / a + 1.0 / c) * sample.values[0].max(1.0)
+    }
+
+    /// Whether `r - w` bends to one side only, and is clear of 0 at both samples: then it changes
+    /// its sign at most once if it does at all. (Where it is 0 at an end, but for rounding, it may
+    /// change there and once more.)
+    fn bends_once(&self, s0: &Sample, s1: &Sample) -> bool {
+        let Shape { a, c } = self.shape;
+        let clear = |s: &Sample| s.difference.abs() > self.rounding(s);
+        ((a >= 1.0 && c >= 1.0) || (a <= 1.0 && c <= 1.0)) && clear(s0) && clear(s1)
+    }
+
+    /// Whether `r - w` does not change its sign between two samples that agree: it is not 0 in
+    /// between, or 0 but for rounding all the way.
     fn excludes(&self, s0: &Sample, s1: &Sample) -> bool {
         let [r_below, r_above] = self.enclosure(0, s0, s1);
         let [w_below, w_above] = self.enclosure(1, s0, s1);
-        let apart =
-            |upper: &Linear, lower: &Linear| lower.0[0] > upper.0[0] && lower.0[1] > upper.0[1];
-        let any = |uppers: &[Linear; 2], lowers: &[Linear; 2]| {
-            uppers.iter().any(|u| lowers.iter().any(|l| apart(u, l)))
+        let gaps = |r: [Linear; 2], w: [Linear; 2]| {
+            let gap = |r: Linear, w: Linear| [r.0[0] - w.0[0], r.0[1] - w.0[1]];
+            [
+                gap(r[0], w[0]),
+                gap(r[0], w[1]),
+                gap(r[1], w[0]),
+                gap(r[1], w[1]),
+            ]
         };
-        any(&r_above, &w_below) || any(&w_above, &r_below)
+        // A bound that is NaN bounds nothing.
+        let least = gaps(r_below, w_above)
+            .map(|[a, b]| if (a + b).is_nan() { f64::NAN } else { a.min(b) })
+            .into_iter()
+            .fold(f64::NEG_INFINITY, f64::max);
+        let most = gaps(r_above, w_below)
+            .map(|[a, b]| if (a + b).is_nan() { f64::NAN } else { a.max(b) })
+            .into_iter()
+            .fold(f64::INFINITY, f64::min);
+        let rounding = self.rounding(s0).max(self.rounding(s1));
+        least > 0.0 || most < 0.0 || (least >= -rounding && most <= rounding)
     }
 
     /// Whether `r - w` has at most one root between two samples: it rises or falls all the way.
@@ -164,20 +197,28 @@ impl Octant {
     }
 
     /// Adds the sign changes between two samples.
-    fn crossings(&self, s0: &Sample, s1: &Sample, depth: u32, changes: &mut SignChangeList) {
+    /// `left` counts down the samples that may still be taken.
+    fn crossings(
+        &self,
+        s0: &Sample,
+        s1: &Sample,
+        depth: u32,
+        left: &mut u32,
+        changes: &mut SignChangeList,
+    ) {
         let change = (s0.difference < 0.0) != (s1.difference < 0.0);
-        let Shape { a, c } = self.shape;
-        let one_curvature = (a >= 1.0 && c >= 1.0) || (a <= 1.0 && c <= 1.0);
         let middle = 0.5 * (s0.t + s1.t);
         let decided = Self::is_monotone(s0, s1)
-            || (change && one_curvature)
+            || (change && self.bends_once(s0, s1))
             || (!change && self.excludes(s0, s1))
             || depth == 0
+            || *left == 0
             || !(s0.t < middle && middle < s1.t);
         if !decided {
+            *left -= 1;
             let between = self.sample(middle, None);
-            self.crossings(s0, &between, depth - 1, changes);
-            self.crossings(&between, s1, depth - 1, changes);
+            self.crossings(s0, &between, depth - 1, left, changes);
+            self.crossings(&between, s1, depth - 1, left, changes);
         } else if change {
             let f = |t: f64| self.shape.difference(self.at(t));
             changes.push(bracketed(f, s0.t, s1.t, s0.difference, s1.difference));
@@ -204,7 +245,10 @@ pub(super) fn crossings(exponents: [f64; 2], o: DVec3, d: DVec3) -> SignChangeLi
         }
     }
     knots[1..4].sort_by(f64::total_cmp);
-    let mut low = f64::MIN_POSITIVE;
+    // The solid does not reach out of its box.
+    let outside = |t: f64| shape.difference(p + unit * t).max(f64::MIN_POSITIVE);
+    let mut low = outside(span.start);
+    let mut left = MAX_SAMPLES;
     for (i, pair) in knots.windows(2).enumerate() {
         if !(pair[0] < pair[1]) {
             continue;
@@ -216,14 +260,13 @@ pub(super) fn crossings(exponents: [f64; 2], o: DVec3, d: DVec3) -> SignChangeLi
             p: p * signs,
             d: unit * signs,
         };
-        // The solid does not reach out of its box.
         let is_last = i == 3 || pair[1] >= span.end;
-        let end = is_last.then_some(f64::MIN_POSITIVE);
+        let end = is_last.then(|| outside(pair[1]));
         let (s0, s1) = (
             octant.sample(pair[0], Some(low)),
             octant.sample(pair[1], end),
         );
-        octant.crossings(&s0, &s1, MAX_DEPTH, &mut changes);
+        octant.crossings(&s0, &s1, MAX_DEPTH, &mut left, &mut changes);
         low = s1.difference;
     }
     changes.moved(closest / length, 1.0 / length)

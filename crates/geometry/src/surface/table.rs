@@ -208,6 +208,7 @@ mod tests {
         let mut table = SurfaceTable::new(5.0, 5.0);
         let a = table.insert(cone(0.0, 4.0, -2.0));
         assert_eq!(table.insert(cone(1.0, 2.0, -2.0)), a);
+        assert_eq!(table.insert(cone(1.95, 0.1, -2.0)), a);
         assert_ne!(table.insert(cone(1.0, 2.1, -2.0)), a);
         let b = table.insert(cone(0.0, 2.0, -1e-15));
         assert_ne!(table.insert(cone(0.0, 2.1, -1e-15)), b);

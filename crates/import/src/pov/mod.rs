@@ -20,6 +20,7 @@ mod expect;
 mod expression;
 mod finish;
 mod functions;
+mod implicit;
 mod include;
 mod lexer;
 mod light;
@@ -168,7 +169,7 @@ fn is_reserved(word: &str) -> bool {
 }
 
 /// Words of the language that are not the user's to declare, for suggestions.
-const KEYWORDS: [&str; 122] = [
+const KEYWORDS: [&str; 123] = [
     "aa_level",
     "adaptive",
     "ambient",
@@ -257,6 +258,7 @@ const KEYWORDS: [&str; 122] = [
     "point_at",
     "poly",
     "polygon",
+    "polynomial",
     "prism",
     "quadric",
     "quartic",

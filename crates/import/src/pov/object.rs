@@ -107,7 +107,7 @@ impl Reader<'_> {
         let Some(word) = token.word().cloned() else {
             return self.fail(token.span, "expected an object");
         };
-        if UNSUPPORTED.contains(&&*word) {
+        if is_unsupported(&word) {
             self.warn(
                 token.span,
                 format!("`{word}` is not supported: it is left out"),
@@ -339,7 +339,7 @@ impl Reader<'_> {
 }
 
 /// Words that begin an object.
-pub(super) const OBJECTS: [&str; 35] = [
+pub(super) const OBJECTS: [&str; 36] = [
     "object",
     "union",
     "merge",
@@ -360,36 +360,27 @@ pub(super) const OBJECTS: [&str; 35] = [
     "prism",
     "lathe",
     "quadric",
+    "cubic",
+    "quartic",
+    "poly",
+    "polynomial",
+    "superellipsoid",
     "light_source",
     "light_group",
+    // From here on they are read over.
     "bicubic_patch",
     "blob",
-    "cubic",
     "height_field",
     "isosurface",
     "julia_fractal",
     "parametric",
-    "poly",
-    "quartic",
     "sor",
     "sphere_sweep",
-    "superellipsoid",
     "text",
 ];
 
-/// Objects that are read over.
-const UNSUPPORTED: [&str; 13] = [
-    "bicubic_patch",
-    "blob",
-    "cubic",
-    "height_field",
-    "isosurface",
-    "julia_fractal",
-    "parametric",
-    "poly",
-    "quartic",
-    "sor",
-    "text",
-    "sphere_sweep",
-    "superellipsoid",
-];
+/// Whether objects that begin with this word are read over.
+fn is_unsupported(word: &str) -> bool {
+    let first = OBJECTS.iter().position(|&object| object == "bicubic_patch");
+    OBJECTS[first.unwrap_or(OBJECTS.len())..].contains(&word)
+}

@@ -74,6 +74,9 @@ impl Reader<'_> {
                 Sheet::disc(center, normal, radius, hole).map(Geometry::Sheet)
             }
             "quadric" => return self.quadric(span),
+            "superellipsoid" => return self.superellipsoid(span),
+            "polynomial" => return self.polynomial(span),
+            "cubic" | "quartic" | "poly" => return self.poly(word, span),
             "triangle" | "smooth_triangle" => return self.triangle(word == "smooth_triangle"),
             "mesh" => return self.mesh(span),
             "mesh2" => return self.mesh2(span),
@@ -100,73 +103,6 @@ impl Reader<'_> {
         }
         made.ok()
     }
-
-    /// `<A, B, C>, <D, E, F>, <G, H, I>, J`: `A x^2 + B y^2 + C z^2 + D xy + E xz + F yz + G x + H y
-    /// + I z + J <= 0`. Ellipsoids, elliptic cylinders and half-spaces are shapes that we have.
-    fn quadric(&mut self, span: Span) -> Parsed<Option<Geometry>> {
-        let square = self.vector()?;
-        self.comma();
-        let mixed = self.vector()?;
-        self.comma();
-        let linear = self.vector()?;
-        self.comma();
-        let constant = self.float()?;
-        let made = if mixed == DVec3::ZERO {
-            diagonal_quadric(square, linear, constant)
-        } else {
-            None
-        };
-        match made {
-            Some(made) => Ok(self.usable("quadric", span, made.map(Geometry::Solid))),
-            None => {
-                self.warn(
-                    span,
-                    "a quadric of this kind is not supported: it is left out",
-                );
-                Ok(None)
-            }
-        }
-    }
-}
-
-/// A quadric without mixed terms; `None` where it is of a kind that we do not have.
-fn diagonal_quadric(a: DVec3, b: DVec3, c: f64) -> Option<Result<Solid, ShapeError>> {
-    if a == DVec3::ZERO {
-        return Some(Solid::half_space(b, -c / b.length()));
-    }
-    // An axis without a square must not have a linear term either.
-    let mut center = DVec3::ZERO;
-    let mut level = -c;
-    for axis in 0..3 {
-        if a[axis] < 0.0 || (a[axis] == 0.0 && b[axis] != 0.0) {
-            return None;
-        }
-        if a[axis] > 0.0 {
-            center[axis] = -0.5 * b[axis] / a[axis];
-            level += 0.25 * b[axis] * b[axis] / a[axis];
-        }
-    }
-    if level <= 0.0 {
-        return None;
-    }
-    let radius = |axis: usize| (level / a[axis]).sqrt();
-    let free: Vec<usize> = (0..3).filter(|&axis| a[axis] == 0.0).collect();
-    Some(match free[..] {
-        [] => Solid::sphere(1.0).and_then(|ball| {
-            let scale = DVec3::new(radius(0), radius(1), radius(2));
-            ball.transform(DAffine3::from_translation(center) * DAffine3::from_scale(scale))
-        }),
-        [axis] => Solid::infinite_cylinder(1.0).and_then(|cylinder| {
-            let [i, j] = [(axis + 1) % 3, (axis + 2) % 3];
-            let mut columns = [DVec3::ZERO; 3];
-            columns[0][i] = radius(i);
-            columns[1][j] = radius(j);
-            columns[2][axis] = 1.0;
-            let [x, y, z] = columns;
-            cylinder.transform(DAffine3::from_cols(x, y, z, center))
-        }),
-        _ => return None,
-    })
 }
 
 /// The frame whose z axis leads from `a` to `b`, and the distance.

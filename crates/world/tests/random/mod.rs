@@ -2,8 +2,8 @@
 
 mod profiles;
 
-use octray_geometry::Solid;
 use octray_geometry::surface::SURFACE_TOLERANCE;
+use octray_geometry::{Polynomial, Solid};
 use octray_math::{DAffine3, DVec2, DVec3, transform};
 use proptest::prelude::*;
 
@@ -27,6 +27,10 @@ pub(crate) enum Recipe {
     /// A region drawn out between two heights, and turned about the axis.
     Prism(Profile, f64, f64),
     Lathe(Profile),
+    Quadric([f64; 10]),
+    /// A torus as a quartic.
+    Quartic(f64, f64),
+    Superellipsoid(f64, f64),
     Moved(Box<Recipe>, DAffine3),
     Union(Box<Recipe>, Box<Recipe>),
     Intersection(Box<Recipe>, Box<Recipe>),
@@ -56,6 +60,23 @@ impl Recipe {
                 (inside && within, margin.min(height))
             }
             Self::Lathe(profile) => profile.contains(DVec2::new(rho, p.z)),
+            Self::Quadric(c) => {
+                let DVec3 { x, y, z } = p;
+                let terms = [x * x, y * y, z * z, x * y, x * z, y * z, x, y, z, 1.0];
+                signed(terms.iter().zip(c).map(|(t, c)| t * c).sum())
+            }
+            Self::Quartic(major, minor) => {
+                let k = p.length_squared() + major * major - minor * minor;
+                signed(k * k - 4.0 * major * major * rho * rho)
+            }
+            Self::Superellipsoid(e, n) => {
+                let [x, y, z] = p.abs().to_array();
+                let round = libm::pow(libm::pow(x, 2.0 / e) + libm::pow(y, 2.0 / e), e / n);
+                let value = libm::pow(round + libm::pow(z, 2.0 / n), 0.5 * n) - 1.0;
+                // Steep where it is pinched: near a coordinate plane it says little.
+                let flat = p.abs().min_element().min(1.0);
+                (value < 0.0, value.abs().min(flat))
+            }
             Self::Moved(inner, m) => inner.contains(m.inverse().transform_point3(p)),
             Self::Complement(a) => {
                 let (inside, margin) = a.contains(p);
@@ -116,6 +137,36 @@ fn frame() -> impl Strategy<Value = DAffine3> {
         .prop_map(|(shift, turn)| DAffine3::from_translation(shift) * turn)
 }
 
+/// Ellipsoids, hyperboloids, paraboloids, cylinders, cones and planes, with simple coefficients, so
+/// that all kinds occur and coincide with the primitives of the same shape.
+fn quadric() -> impl Strategy<Value = [f64; 10]> {
+    let square = prop_oneof![Just(1.0), Just(0.0), Just(-1.0), Just(0.25)];
+    let small = || prop_oneof![4 => Just(0.0), 1 => Just(1.0), 1 => -1.0..1.0f64];
+    let squares = proptest::array::uniform3(square);
+    let mixed = proptest::array::uniform3(prop_oneof![3 => Just(0.0), 1 => Just(1.0)]);
+    let constant = prop_oneof![Just(-1.0), Just(0.0), Just(1.0), Just(-2.25)];
+    (squares, mixed, proptest::array::uniform3(small()), constant)
+        .prop_map(|(s, m, l, c)| [s[0], s[1], s[2], m[0], m[1], m[2], l[0], l[1], l[2], c])
+}
+
+fn exponent() -> impl Strategy<Value = f64> {
+    prop_oneof![Just(1.0), Just(2.0), Just(0.2), 0.01..3.0f64]
+}
+
+/// The coefficients of `(x^2 + y^2 + z^2 + R^2 - r^2)^2 - 4 R^2 (x^2 + y^2)`.
+fn torus(major: f64, minor: f64) -> [f64; 35] {
+    let (square, k) = (major * major, (major - minor) * (major + minor));
+    let mut all = [0.0; 35];
+    // Places of x^4, x^2 y^2, x^2 z^2, x^2, y^4, y^2 z^2, y^2, z^4, z^2 and 1.
+    let places = [0, 4, 7, 9, 20, 23, 25, 30, 32, 34];
+    let across = 2.0 * k - 4.0 * square;
+    let values = [1.0, 2.0, 2.0, across, 1.0, 2.0, across, 1.0, 2.0 * k, k * k];
+    for (place, value) in places.into_iter().zip(values) {
+        all[place] = value;
+    }
+    all
+}
+
 fn primitive() -> impl Strategy<Value = Model> {
     let recipe = prop_oneof![
         length().prop_map(Recipe::Sphere),
@@ -129,6 +180,9 @@ fn primitive() -> impl Strategy<Value = Model> {
         (length(), length()).prop_map(|(major, minor)| Recipe::Torus(major, minor)),
         (profile(false), grid(), length()).prop_map(|(p, z, h)| Recipe::Prism(p, z, z + h)),
         profile(true).prop_map(Recipe::Lathe),
+        quadric().prop_map(Recipe::Quadric),
+        (length(), length()).prop_map(|(major, minor)| Recipe::Quartic(major, minor)),
+        (exponent(), exponent()).prop_map(|(e, n)| Recipe::Superellipsoid(e, n)),
     ];
     recipe.prop_map(|recipe| {
         let solid = match &recipe {
@@ -139,6 +193,11 @@ fn primitive() -> impl Strategy<Value = Model> {
             Recipe::Torus(major, minor) => Solid::torus(*major, *minor),
             Recipe::Prism(profile, z0, z1) => Solid::prism(&profile.region, *z0, *z1),
             Recipe::Lathe(profile) => Solid::lathe(&profile.region),
+            Recipe::Quadric(c) => Solid::quadric(*c),
+            Recipe::Quartic(major, minor) => {
+                Polynomial::new(4, &torus(*major, *minor)).and_then(Solid::polynomial)
+            }
+            Recipe::Superellipsoid(e, n) => Solid::superellipsoid(*e, *n),
             _ => unreachable!("only primitives are made above"),
         };
         Model {

@@ -4,6 +4,7 @@ mod aimed;
 mod classify;
 mod crossings;
 mod double_double;
+mod tangent;
 
 use std::sync::Arc;
 

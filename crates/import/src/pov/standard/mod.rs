@@ -72,6 +72,7 @@ pub(super) fn find(name: &str) -> Option<Standard> {
         "consts.inc" => (include_str!("consts.inc"), false, true, &[]),
         "math.inc" => (include_str!("math.inc"), false, false, &[]),
         "shapes.inc" => (include_str!("shapes.inc"), false, false, &[]),
+        "shapesq.inc" => (include_str!("shapesq.inc"), false, false, &[]),
         "finish.inc" => (include_str!("finish.inc"), false, true, &[]),
         "textures.inc" => (include_str!("textures.inc"), false, false, &["colors.inc"]),
         "glass.inc" | "glass_old.inc" => (include_str!("glass.inc"), false, false, &[]),
