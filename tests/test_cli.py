@@ -318,6 +318,25 @@ def test_info_lists_the_scene(octray_command: Octray, cube: Path) -> None:
     assert described["file"] == cube.name
     assert described["triangles"] == 12
     assert described["warnings"] == []
+    assert [(m["closed"], m["solid"], m["shells"]) for m in described["meshes"]] == [
+        (True, True, 1)
+    ]
+
+
+def test_info_says_what_is_wrong_with_a_mesh(
+    octray_command: Octray, cube: Path, tmp_path: Path
+) -> None:
+    assert "bounds a solid of 1 shell" in octray_command("info", cube.name).stdout
+    # Without its last face, of which every edge is open.
+    lines = cube.read_text().strip().splitlines()
+    (tmp_path / "open.obj").write_text("\n".join(lines[:-1]))
+    shown = octray_command("info", "open.obj").stdout
+    assert "not closed: no boundary of a solid: open edge 4" in shown
+    assert "has the edge (0, 0, 0) to (0, 1, 0)" in shown
+    (check,) = json.loads(octray_command("info", "open.obj", "--json").stdout)["meshes"]
+    assert (check["closed"], check["solid"], check["flaws"]) == (False, False, {"open edge": 4})
+    corners = {tuple(point) for place in check["places"] for point in place["points"]}
+    assert corners == {(0, 0, 0), (0, 1, 0), (0, 0, 1), (0, 1, 1)}
 
 
 def test_the_doctor_finds_this_installation_sound(octray_command: Octray) -> None:

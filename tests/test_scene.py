@@ -96,8 +96,11 @@ def test_a_mesh_file_can_be_a_sheet_or_a_solid(cube: Path) -> None:
 
 def test_open_meshes_are_no_solids_and_scenes_no_meshes(tmp_path: Path) -> None:
     scene = octray.Scene()
-    with pytest.raises(ValueError, match="not closed"):
-        scene.add_mesh(TRIANGLE, solid=True)
+    for rule in (True, "strict", "winding"):
+        with pytest.raises(ValueError, match="3 open edges"):
+            scene.add_mesh(TRIANGLE, solid=rule)
+    with pytest.raises(TypeError, match="boolean"):
+        scene.add_mesh(TRIANGLE, solid=3)  # type: ignore[arg-type]
     with pytest.raises(TypeError, match="expected a path, a pair"):
         scene.add_mesh(3)  # type: ignore[arg-type]
     with pytest.raises(FileNotFoundError):

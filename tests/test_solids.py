@@ -178,7 +178,31 @@ def test_a_polyhedron_may_have_dents() -> None:
 
 def test_open_meshes_are_refused_as_solids() -> None:
     with pytest.raises(ValueError, match="not closed"):
+        octray.mesh_solid([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]], "winding")
+    with pytest.raises(
+        ValueError, match=r"3 open edges: only triangle 0 .* \(0, 0, 0\) to \(1, 0, 0"
+    ):
         octray.mesh_solid([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]])
+
+
+def test_meshes_that_cross_are_taken_by_winding_number_on_request() -> None:
+    corner = np.array([[0, 0, 0], [4, 0, 0], [0, 4, 0], [0, 0, 4]], dtype=float)
+    faces = np.array([[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]])
+    corners, faces = np.vstack([corner, corner + 0.5]), np.vstack([faces, faces + 4])
+    with pytest.raises(ValueError, match=r"crossings of triangles: .*cross at \("):
+        octray.mesh_solid(corners, faces)
+    # The slanted faces are x + y + z = 4 and 5.5.
+    solid = octray.mesh_solid(corners, faces, "winding")
+    through_both = [0.7, 0.6, 100.0, 0.0, 0.0, -1.0]
+    assert depth(solid, through_both) == pytest.approx(100 - 4.2, rel=1e-12)
+    assert count(solid, through_both) == 2
+    # An inside-out mesh has the same inside.
+    with pytest.raises(ValueError, match="inside out"):
+        octray.mesh_solid(corner, faces[:4, ::-1])
+    turned = octray.mesh_solid(corner, faces[:4, ::-1], "winding")
+    assert depth(turned) == pytest.approx(100 - 3.5, rel=1e-12)
+    with pytest.raises(ValueError, match='"strict" or "winding", not "loose"'):
+        octray.mesh_solid(corner, faces[:4], "loose")  # type: ignore[arg-type]
 
 
 @pytest.mark.parametrize(

@@ -11,6 +11,9 @@ if TYPE_CHECKING:
 
 #: Octrees, or every surface for every ray. The answers are the same bits.
 Accel = Literal["auto", "brute"]
+MeshRule = Literal["strict", "winding"]
+#: Whose intervals count where solids overlap.
+Overlaps = Literal["regions", "priorities", "objects"]
 #: How light becomes the colours of a PNG.
 View = Literal["neutral", "standard", "raw"]
 

@@ -4,6 +4,7 @@
 //! two sides and no inside. Both are immutable and cheap to clone, and valid by construction:
 //! every constructor refuses what it cannot represent with a [`ShapeError`].
 
+mod composite;
 pub mod csg;
 mod frame;
 mod identity;
@@ -11,13 +12,15 @@ mod implicit;
 pub mod mesh;
 mod polynomial;
 mod primitive;
+pub mod profile;
 mod sheet;
 mod solid;
 pub mod surface;
 
+pub use composite::{Composite, CompositeFace, CompositeKind};
 pub use frame::SceneFrame;
 pub use identity::{FaceId, MaterialId, SurfaceId};
-pub use mesh::{CornerAttribute, MeshError, TriangleMesh};
+pub use mesh::{CornerAttribute, MeshError, MeshRule, TriangleMesh};
 pub use polynomial::Polynomial;
 pub use primitive::{ConvexPolyhedron, Primitive, ShapeError};
 pub use sheet::Sheet;

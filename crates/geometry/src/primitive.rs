@@ -6,6 +6,7 @@ use octray_math::{Aabb, DVec3};
 use thiserror::Error;
 
 use crate::Polynomial;
+use crate::composite::Composite;
 use crate::mesh::{MeshError, TriangleMesh};
 use crate::surface::QuadricForm;
 
@@ -65,6 +66,9 @@ pub enum ShapeError {
     /// The faces of a convex polyhedron enclose no bounded, full-dimensional region.
     #[error("the polyhedron is {0}")]
     BadPolyhedron(&'static str),
+    /// The outlines of a prism's or lathe's profile cannot be used.
+    #[error("the profile {0}")]
+    BadProfile(&'static str),
     /// The tree of operations is too deep.
     #[error("the solid has {0} nested operations; at most {max} are supported", max = crate::solid::MAX_NESTING)]
     TooDeep(u32),
@@ -135,6 +139,8 @@ pub enum Primitive {
     },
     /// A bounded intersection of half-spaces.
     Convex(Arc<ConvexPolyhedron>),
+    /// A prism, a lathe or a concave polyhedron.
+    Composite(Arc<Composite>),
     /// The inside of a closed, consistently oriented mesh.
     Mesh(Arc<TriangleMesh>),
 }
@@ -222,6 +228,8 @@ impl Primitive {
             Self::Box { .. } => 6,
             Self::Cylinder { .. } | Self::Cone { .. } => 3,
             Self::Convex(polyhedron) => polyhedron.planes.len() as u64,
+            // Each may be named with both of its sides.
+            Self::Composite(composite) => 2 * composite.faces().len() as u64,
             // One more stands for the whole mesh in expressions.
             Self::Mesh(mesh) => mesh.triangles().len() as u64 + 1,
         }
@@ -249,6 +257,7 @@ impl Primitive {
             Self::Superellipsoid { .. } => Aabb::new(-DVec3::ONE, DVec3::ONE),
             Self::Quadric(_) | Self::HalfSpace { .. } => Aabb::ALL,
             Self::Convex(polyhedron) => polyhedron.bounds(),
+            Self::Composite(composite) => composite.bounds(),
             Self::Mesh(mesh) => mesh.bounds(),
         }
     }

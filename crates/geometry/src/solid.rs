@@ -5,8 +5,9 @@ use std::sync::Arc;
 use octray_math::{Aabb, DAffine3, DVec3, transform};
 
 use crate::MaterialId;
-use crate::mesh::TriangleMesh;
+use crate::mesh::{MeshRule, TriangleMesh};
 use crate::primitive::{ConvexPolyhedron, Primitive, ShapeError};
+use crate::profile::{self, Region};
 
 /// An immutable CSG tree, shared on clone.
 ///
@@ -305,12 +306,56 @@ impl Solid {
         Self::primitive(Primitive::Convex(polyhedron))
     }
 
-    /// The inside of a closed mesh.
+    /// A region of the xy plane drawn out along z, from `z0` to `z1`.
     ///
     /// # Errors
-    /// The mesh is empty, open, non-manifold or not consistently oriented.
-    pub fn mesh(mesh: Arc<TriangleMesh>) -> Result<Self, ShapeError> {
-        mesh.check_closed()?;
+    /// A height is not finite, or `z1 - z0` is not positive.
+    pub fn prism(region: &Region, z0: f64, z1: f64) -> Result<Self, ShapeError> {
+        Self::tapered_prism(region, [z0, z1], [1.0, 1.0])
+    }
+
+    /// The solid whose section at height `z` is the region scaled about the z axis, by `scale[0]`
+    /// at `z[0]` and `scale[1]` at `z[1]`, linearly in between: a pyramid where one of them is 0.
+    ///
+    /// # Errors
+    /// A height is not finite, `z[1] - z[0]` is not positive, a scale is negative or not finite,
+    /// both are 0, or they differ and the region has Bézier curves or edges that cross.
+    pub fn tapered_prism(
+        region: &Region,
+        z: [f64; 2],
+        scale: [f64; 2],
+    ) -> Result<Self, ShapeError> {
+        finite("z0", z[0])?;
+        positive("height", z[1] - z[0])?;
+        for value in scale {
+            if finite("scale", value)? < 0.0 {
+                return Err(ShapeError::NotPositive {
+                    what: "scale",
+                    value,
+                });
+            }
+        }
+        positive("largest scale", scale[0].max(scale[1]))?;
+        let prism = profile::prism(region, z, scale)?;
+        Ok(Self::primitive(Primitive::Composite(Arc::new(prism))))
+    }
+
+    /// A region turned about the z axis: its x is the distance from the axis, its y the height.
+    ///
+    /// # Errors
+    /// A part of the region lies at negative x.
+    pub fn lathe(region: &Region) -> Result<Self, ShapeError> {
+        let lathe = profile::lathe(region)?;
+        Ok(Self::primitive(Primitive::Composite(Arc::new(lathe))))
+    }
+
+    /// The inside of a closed mesh: where its winding number is not 0.
+    ///
+    /// # Errors
+    /// The mesh does not comply with `rule` ([`TriangleMesh::check_solid`]): the error says what is
+    /// wrong and where.
+    pub fn mesh(mesh: Arc<TriangleMesh>, rule: MeshRule) -> Result<Self, ShapeError> {
+        mesh.check_solid(rule)?;
         Ok(Self::primitive(Primitive::Mesh(mesh)))
     }
 
@@ -412,12 +457,14 @@ impl Solid {
     /// primitives, so that nested rotations do not inflate the box at every level.
     #[must_use]
     pub fn bounds_in(&self, world_from_here: &DAffine3) -> Aabb {
-        let each = |solids: &[Self]| -> Vec<Aabb> {
-            solids
-                .iter()
-                .map(|s| s.bounds_in(world_from_here))
-                .collect()
-        };
+        self.enclosure_in(world_from_here, 0.0)
+    }
+
+    /// Like [`Solid::bounds_in`], but operands whose boxes are apart by up to `slack` still have an
+    /// intersection: where rounding moves boundaries by less, it cannot leave the box.
+    #[must_use]
+    pub fn enclosure_in(&self, world_from_here: &DAffine3, slack: f64) -> Aabb {
+        let of = |solid: &Self| solid.enclosure_in(world_from_here, slack);
         match self.node() {
             SolidNode::Empty => Aabb::EMPTY,
             SolidNode::Primitive(Primitive::Convex(polyhedron)) => Aabb::from_points(
@@ -430,20 +477,18 @@ impl Solid {
             SolidNode::Transformed {
                 child,
                 parent_from_child,
-            } => child.bounds_in(&(*world_from_here * *parent_from_child)),
-            SolidNode::WithMaterial { child, .. } => child.bounds_in(world_from_here),
-            SolidNode::Union(solids) => each(solids).into_iter().fold(Aabb::EMPTY, Aabb::union),
+            } => child.enclosure_in(&(*world_from_here * *parent_from_child), slack),
+            SolidNode::WithMaterial { child, .. } => of(child),
+            SolidNode::Union(solids) => solids.iter().map(of).fold(Aabb::EMPTY, Aabb::union),
             SolidNode::Intersection(solids) => {
-                let common = each(solids).into_iter().fold(Aabb::ALL, Aabb::intersection);
-                if common.is_empty() {
+                let common = solids.iter().map(of).fold(Aabb::ALL, Aabb::intersection);
+                if common.inflated(0.5 * slack).is_empty() {
                     Aabb::EMPTY
                 } else {
-                    common
+                    Aabb::new(common.min.min(common.max), common.max.max(common.min))
                 }
             }
-            SolidNode::Difference(solids) => solids
-                .first()
-                .map_or(Aabb::EMPTY, |first| first.bounds_in(world_from_here)),
+            SolidNode::Difference(solids) => solids.first().map_or(Aabb::EMPTY, of),
             SolidNode::Complement(_) => Aabb::ALL,
         }
     }

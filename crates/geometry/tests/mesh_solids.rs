@@ -7,9 +7,9 @@ mod meshes;
 use std::f64::consts::TAU;
 use std::sync::Arc;
 
-use meshes::{Random, cuboid, moved, nasty_ray, sphere, torus, zoo};
+use meshes::{Random, cuboid, moved, nasty_ray, sphere, together, torus, zoo};
 use octray_geometry::TriangleMesh;
-use octray_geometry::mesh::{MeshCrossing, MeshError, MeshSolid};
+use octray_geometry::mesh::{FlawKind, MeshCrossing, MeshError, MeshSolid};
 use octray_math::{DAffine3, DVec3, Ray};
 use octray_tree::{WalkCost, WideTreeConfig};
 
@@ -22,18 +22,6 @@ fn crossings(solid: &MeshSolid, ray: &Ray) -> Vec<MeshCrossing> {
     let mut out = Vec::new();
     solid.crossings(ray, &mut out, &mut WalkCost::default());
     out
-}
-
-/// All triangles of both.
-fn together(a: &TriangleMesh, b: &TriangleMesh) -> TriangleMesh {
-    let first = a.positions().len() as u32;
-    let positions = [a.positions(), b.positions()].concat();
-    let moved = b.triangles().iter().map(|t| t.map(|i| i + first));
-    TriangleMesh::new(
-        positions,
-        a.triangles().iter().copied().chain(moved).collect(),
-    )
-    .unwrap()
 }
 
 #[test]
@@ -168,10 +156,13 @@ fn inside_out_meshes_and_mirrored_frames_are_put_right() {
         let ray = Ray::new(DVec3::new(0.1, 0.2, -4.0), DVec3::Z);
         let found = crossings(&solid, &ray);
         assert_eq!(found.len(), 2);
-        let normal = |c: &MeshCrossing| solid.point(&ray, c.triangle).unwrap().normal;
+        let normal = |c: &MeshCrossing| solid.point(&ray, c.triangle, c.entering).unwrap().normal;
         assert!(normal(&found[0]).z < -0.9 && normal(&found[1]).z > 0.9);
     }
     let open = TriangleMesh::new(vec![DVec3::ZERO, DVec3::X, DVec3::Y], vec![[0, 1, 2]]).unwrap();
     let error = MeshSolid::new(&Arc::new(open), &DAffine3::IDENTITY, None).unwrap_err();
-    assert!(matches!(error, MeshError::Open { count: 3, .. }));
+    let MeshError::NoInside(report) = error else {
+        panic!("{error}");
+    };
+    assert_eq!(report.count(FlawKind::OpenEdge), 3);
 }

@@ -56,6 +56,42 @@ impl CellKey {
         (i & 1) | (j & 1) << 1 | (k & 1) << 2
     }
 
+    /// Which child the ancestor of `depth` (at least 1, at most this depth) is of its parent.
+    #[must_use]
+    pub const fn octant_at(self, depth: u32) -> u32 {
+        let below = self.depth - depth;
+        let [i, j, k] = self.index;
+        (i >> below & 1) | (j >> below & 1) << 1 | (k >> below & 1) << 2
+    }
+
+    /// The cell of this depth that holds `point`, `None` outside the cube `root`. A point on a face
+    /// belongs to the upper cell; the faces of the root to the cells inside.
+    #[must_use]
+    pub fn containing(root: &Aabb, depth: u32, point: DVec3) -> Option<Self> {
+        if !root.contains(point) {
+            return None;
+        }
+        let cells = f64::from(1u32 << depth);
+        let size = root.size().x / cells;
+        let index = |axis: usize| {
+            let (low, x) = (root.min[axis], point[axis]);
+            let guess = libm::floor((x - low) / size).clamp(0.0, cells - 1.0);
+            // The difference may have rounded across a face; the faces themselves are exact.
+            let index = if x < low + guess * size {
+                guess - 1.0
+            } else if x >= low + (guess + 1.0) * size {
+                guess + 1.0
+            } else {
+                guess
+            };
+            index.clamp(0.0, cells - 1.0) as u32
+        };
+        Some(Self {
+            depth,
+            index: [index(0), index(1), index(2)],
+        })
+    }
+
     /// The cell's box in the cube `root`.
     #[must_use]
     pub fn bounds(self, root: &Aabb) -> Aabb {

@@ -7,6 +7,7 @@
 //! Nothing here depends on another crate of ours, allocates per call, or can fail.
 
 mod aabb;
+pub mod bernstein;
 mod cell_key;
 mod hash;
 mod interval;

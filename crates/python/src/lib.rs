@@ -4,6 +4,7 @@
 mod arrays;
 mod background;
 mod camera;
+mod check;
 mod convert;
 mod describe;
 mod diagnostics;
@@ -42,7 +43,7 @@ mod _core {
     #[pymodule_export]
     use super::material::Material;
     #[pymodule_export]
-    use super::queries::Hits;
+    use super::queries::{Hits, Intersections};
     #[pymodule_export]
     use super::render::check_request;
     #[pymodule_export]

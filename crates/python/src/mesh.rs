@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use octray::geometry::{Primitive, Sheet, Solid, SolidNode, TriangleMesh};
+use octray::geometry::{MeshRule, Primitive, Sheet, Solid, SolidNode, TriangleMesh};
 use octray::import::polygon::Triangulator;
 use octray::math::{DAffine3, DVec3};
 use octray::scene::{MaterialId, Shape as ObjectShape};
@@ -88,11 +88,13 @@ impl Placed {
         })
     }
 
-    /// Its shape, as a solid if `filled` or if it was one.
-    pub(crate) fn shape(&self, filled: bool) -> PyResult<ObjectShape> {
+    /// Its shape, as a solid if there is a rule for that or if it was one.
+    pub(crate) fn shape(&self, filled: Option<MeshRule>) -> PyResult<ObjectShape> {
         let mesh = Arc::clone(&self.mesh);
-        if filled || self.solid {
-            let solid = Solid::mesh(mesh).map_err(value_error)?;
+        // What came as a solid was taken by its winding number, and that was said.
+        let was_solid = self.solid.then_some(MeshRule::Winding);
+        if let Some(rule) = filled.or(was_solid) {
+            let solid = Solid::mesh(mesh, rule).map_err(value_error)?;
             let placed = if self.world_from_mesh == DAffine3::IDENTITY {
                 solid
             } else {
@@ -104,6 +106,31 @@ impl Placed {
             mesh,
             world_from_mesh: self.world_from_mesh,
         }))
+    }
+}
+
+/// `"strict"` or `"winding"`.
+pub(crate) fn rule(name: &str) -> PyResult<MeshRule> {
+    match name {
+        "strict" => Ok(MeshRule::Strict),
+        "winding" => Ok(MeshRule::Winding),
+        _ => Err(PyValueError::new_err(format!(
+            "the rule for meshes as solids is \"strict\" or \"winding\", not {name:?}"
+        ))),
+    }
+}
+
+/// Whether and by what rule a mesh is filled: a boolean (true is strict) or the name of a rule.
+pub(crate) fn filling(solid: &Bound<'_, PyAny>) -> PyResult<Option<MeshRule>> {
+    if let Ok(name) = solid.extract::<String>() {
+        return rule(&name).map(Some);
+    }
+    match solid.extract::<bool>() {
+        Ok(filled) => Ok(filled.then_some(MeshRule::Strict)),
+        Err(_) => Err(PyTypeError::new_err(format!(
+            "solid must be a boolean, \"strict\" or \"winding\", not {}",
+            solid.get_type().name()?
+        ))),
     }
 }
 

@@ -1,5 +1,6 @@
 //! Objects with their materials into a scene.
 
+use octray::geometry::MeshRule;
 use octray::import::dress;
 use octray::scene::{self, MaterialId, Object, Shape};
 use pyo3::exceptions::PyValueError;
@@ -48,13 +49,13 @@ impl Scene {
         self.changed().add_object(object).0
     }
 
-    /// Adds a mesh that stands alone (`look` is `None`) or in a file with materials of its own.
+    /// Adds a mesh, filled if there is a rule for that, that stands alone (`look` is `None`) or in a file with materials of its own.
     pub(crate) fn adopt(
         &mut self,
         shape: &Shape,
         name: &str,
         look: Option<(&[scene::Material], MaterialId)>,
-        filled: bool,
+        filled: Option<MeshRule>,
         common: &Common<'_, '_>,
     ) -> PyResult<u32> {
         let placed = mesh::Placed::of(shape).ok_or_else(|| {

@@ -95,7 +95,8 @@ pub(crate) fn rendering(
 
     let world = prepared.world.stats();
     let trees = PyDict::new(py);
-    let cell_tree = world.cells.as_ref().map(|s| cells(py, s)).transpose()?;
+    let cell_tree = world.cells.as_ref();
+    let cell_tree = cell_tree.map(|s| cells(py, &s.cells)).transpose()?;
     trees.set_item("cells", cell_tree)?;
     let wide_tree = world.triangle_tree.as_ref();
     let wide_tree = wide_tree.map(|s| wide(py, s)).transpose()?;

@@ -7,7 +7,7 @@ use octray::scene::{self, SceneBuilder, SceneError, Settings, Shape};
 use octray::world::Accel;
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
-use pyo3::types::PyDict;
+use pyo3::types::{PyDict, PyList};
 
 use crate::background;
 use crate::camera::Camera;
@@ -17,7 +17,7 @@ use crate::image::Image;
 use crate::light::Light;
 use crate::mesh;
 use crate::objects::Common;
-use crate::queries::{self, Hits};
+use crate::queries::{self, Crossings, Hits, Intersections};
 use crate::render::{self, Request};
 use crate::solid::Solid;
 use crate::world::{Prepared, completed, configured, prepare};
@@ -128,20 +128,26 @@ impl Scene {
     }
 
     /// Adds a mesh: the path of a mesh file, a pair (vertices, faces), or anything that has
-    /// `.vertices` and `.faces`. With `solid` its inside is filled, and it must be closed.
-    /// Returns the object's id; the objects of a file that holds several follow one another.
+    /// `.vertices` and `.faces`. Returns the object's id; the objects of a file that holds several
+    /// follow one another.
+    ///
+    /// With `solid=True` or `"strict"` its inside is filled: it must be closed, and nothing may
+    /// cross, overlap or face the wrong way, or a `ValueError` says what is wrong where. With
+    /// `"winding"` inside is where the winding number is not 0, whatever crosses or overlaps; the
+    /// mesh must be closed.
     #[pyo3(signature = (
-        mesh, *, name = None, material = None, solid = false, priority = 0, shadows = true
+        mesh, *, name = None, material = None, solid = None, priority = 0, shadows = true
     ))]
     fn add_mesh(
         &mut self,
         mesh: &Bound<'_, PyAny>,
         name: Option<&str>,
         material: Option<&Bound<'_, PyAny>>,
-        solid: bool,
+        solid: Option<&Bound<'_, PyAny>>,
         priority: i32,
         shadows: bool,
     ) -> PyResult<u32> {
+        let filled = solid.map(mesh::filling).transpose()?.flatten();
         let common = Common {
             name,
             material,
@@ -151,14 +157,14 @@ impl Scene {
         match mesh::Source::of(mesh)? {
             mesh::Source::Arrays(mesh) => {
                 let shape = Shape::Sheet(Sheet::mesh(mesh));
-                self.adopt(&shape, "", None, solid, &common)
+                self.adopt(&shape, "", None, filled, &common)
             }
             mesh::Source::File(path) => {
                 let (file, said) = crate::load::read(mesh.py(), &path, false)?;
                 let mut first = None;
                 for object in file.objects() {
                     let look = Some((file.materials(), object.material));
-                    let id = self.adopt(&object.shape, &object.name, look, solid, &common)?;
+                    let id = self.adopt(&object.shape, &object.name, look, filled, &common)?;
                     first.get_or_insert(id);
                 }
                 self.diagnostics.extend(said);
@@ -218,6 +224,13 @@ impl Scene {
     fn names(&self) -> Vec<&str> {
         let objects = self.builder.so_far().objects();
         objects.iter().map(|o| o.name.as_str()).collect()
+    }
+
+    /// The names of the materials; a material's id is an index into it.
+    #[getter]
+    fn material_names(&self) -> Vec<&str> {
+        let materials = self.builder.so_far().materials();
+        materials.iter().map(|m| m.name.as_str()).collect()
     }
 
     /// The box around all bounded objects as (lowest corner, highest corner), or `None`.
@@ -299,18 +312,71 @@ impl Scene {
         queries::cast_rays(slf, rays, (accel, threads))
     }
 
-    /// How many boundaries each ray crosses at t > 0, entries and exits each one, int64.
-    #[pyo3(signature = (rays, *, accel = "auto", threads = None))]
+    /// Every interval of every ray of an array (..., 6) inside every solid, ordered by ray and then by
+    /// where it begins. Sheets have no inside and no intervals. A ray that starts inside has an
+    /// interval from t = 0, one that never leaves ends at infinity; with `whole_line` t counts from
+    /// -inf. A ray with NaN or without direction has no interval.
+    ///
+    /// Where solids overlap, `overlaps` says whose intervals count: "regions", of the one solid that
+    /// a point belongs to (higher priority, then the smaller solid, then the later one), so that
+    /// intervals never overlap; "priorities", of the solids of highest priority; "objects", of every
+    /// solid as if it were alone.
+    #[pyo3(signature = (
+        rays, *, whole_line = false, overlaps = "regions", accel = "auto", threads = None
+    ))]
+    fn list_intersections(
+        slf: &Bound<'_, Self>,
+        rays: &Bound<'_, PyAny>,
+        whole_line: bool,
+        overlaps: &str,
+        accel: &str,
+        threads: Option<usize>,
+    ) -> PyResult<Intersections> {
+        queries::list_intersections(slf, rays, whole_line, overlaps, (accel, threads))
+    }
+
+    /// `list_intersections` for more rays than memory holds: yields the `Intersections` of at most
+    /// `chunk` rays at a time. `rays` is an array (N, 6), which may be a memory-mapped file, or an
+    /// iterator of such arrays.
+    #[pyo3(signature = (
+        rays, *, chunk = 65536, whole_line = false, overlaps = "regions", accel = "auto",
+        threads = None
+    ))]
+    fn iter_intersections<'py>(
+        slf: &Bound<'py, Self>,
+        rays: &Bound<'py, PyAny>,
+        chunk: isize,
+        whole_line: bool,
+        overlaps: &str,
+        accel: &str,
+        threads: Option<usize>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let py = slf.py();
+        let options = PyDict::new(py);
+        options.set_item("whole_line", whole_line)?;
+        options.set_item("overlaps", overlaps)?;
+        options.set_item("accel", accel)?;
+        options.set_item("threads", threads)?;
+        let module = py.import("octray._chunks")?;
+        module.call_method1("iter_intersections", (slf, rays, chunk, options))
+    }
+
+    /// How many boundaries each ray of an array (..., 6) crosses at t > 0, or with `whole_line` at any
+    /// t: each entry into a solid, each exit from one, and each sheet. Two solids that touch count
+    /// as two. int64, the rays' leading axes.
+    #[pyo3(signature = (rays, *, whole_line = false, accel = "auto", threads = None))]
     fn count_intersections<'py>(
         slf: &Bound<'py, Self>,
         rays: &Bound<'py, PyAny>,
+        whole_line: bool,
         accel: &str,
         threads: Option<usize>,
     ) -> PyResult<Bound<'py, PyArrayDyn<i64>>> {
-        queries::count_intersections(slf, rays, (accel, threads))
+        queries::count_intersections(slf, rays, whole_line, (accel, threads))
     }
 
-    /// Whether each ray meets anything at 0 < t < tfar.
+    /// Whether each ray of an array (..., 6) meets any surface, transparent or not, at 0 < t < tfar.
+    /// bool, the rays' leading axes.
     #[pyo3(signature = (rays, *, tfar = f64::INFINITY, accel = "auto", threads = None))]
     fn test_occlusions<'py>(
         slf: &Bound<'py, Self>,
@@ -322,9 +388,69 @@ impl Scene {
         queries::test_occlusions(slf, rays, tfar, (accel, threads))
     }
 
+    /// Whether each point of an array (..., 3) lies in a solid: bool, the points' leading axes. On a
+    /// boundary it is decided for one of the sides. A point with NaN is outside.
+    #[pyo3(signature = (points, *, accel = "auto", threads = None))]
+    fn compute_occupancy<'py>(
+        slf: &Bound<'py, Self>,
+        points: &Bound<'py, PyAny>,
+        accel: &str,
+        threads: Option<usize>,
+    ) -> PyResult<Bound<'py, PyArrayDyn<bool>>> {
+        queries::compute_occupancy(slf, points, (accel, threads))
+    }
+
+    /// The solid that each point of an array (..., 3) belongs to, -1 outside: int64, the points' leading
+    /// axes. Of several solids it is the one of higher priority, then the smaller, then the later.
+    #[pyo3(signature = (points, *, accel = "auto", threads = None))]
+    fn locate<'py>(
+        slf: &Bound<'py, Self>,
+        points: &Bound<'py, PyAny>,
+        accel: &str,
+        threads: Option<usize>,
+    ) -> PyResult<Bound<'py, PyArrayDyn<i64>>> {
+        queries::locate(slf, points, (accel, threads))
+    }
+
+    /// The same questions under the names that trimesh gives them.
+    #[getter]
+    fn ray<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
+        let module = slf.py().import("octray.ray")?;
+        module.call_method1("RayIntersector", (slf,))
+    }
+
+    /// For `octray.ray`: ray, number of the face, and t of the first `limit` surfaces on each ray.
+    #[pyo3(signature = (rays, limit = None))]
+    fn _crossings<'py>(
+        slf: &Bound<'py, Self>,
+        rays: &Bound<'py, PyAny>,
+        limit: Option<usize>,
+    ) -> PyResult<Crossings<'py>> {
+        queries::crossings(slf, rays, limit, ("auto", None))
+    }
+
+    /// For the command line: how many of the rays are none.
+    #[pyo3(signature = (rays, *, accel = "auto", threads = None))]
+    fn _count_invalid_rays(
+        slf: &Bound<'_, Self>,
+        rays: &Bound<'_, PyAny>,
+        accel: &str,
+        threads: Option<usize>,
+    ) -> PyResult<usize> {
+        queries::count_invalid_rays(slf, rays, (accel, threads))
+    }
+
     /// Everything in the scene as plain dictionaries, lists and numbers, ready for JSON.
     fn describe<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         crate::describe::scene(py, self.builder.so_far())
+    }
+
+    /// What is known of the meshes as boundaries of solids, one dictionary for each mesh of each
+    /// object: whether it is `closed` and whether it bounds a `solid`, its `shells`, how many
+    /// `flaws` of each kind there are, and the first `places`. Takes about a second for 500,000
+    /// triangles.
+    fn check_meshes<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyList>> {
+        crate::check::meshes(py, self.builder.so_far())
     }
 
     fn __len__(&self) -> usize {

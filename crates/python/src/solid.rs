@@ -349,9 +349,15 @@ pub(crate) fn superellipsoid(e: f64, n: f64) -> PyResult<Solid> {
 
 /// A polyhedron from its corners, shape (N, 3), and its plane faces: a list of lists of corner
 /// indices in order round the face, counter-clockwise seen from outside (either way round if it
-/// is convex).
+/// is convex). The rule is that of `mesh_solid`.
 #[pyfunction]
-pub(crate) fn polyhedron(vertices: &Bound<'_, PyAny>, faces: &Bound<'_, PyAny>) -> PyResult<Solid> {
+#[pyo3(signature = (vertices, faces, rule = "strict"))]
+pub(crate) fn polyhedron(
+    vertices: &Bound<'_, PyAny>,
+    faces: &Bound<'_, PyAny>,
+    rule: &str,
+) -> PyResult<Solid> {
+    let rule = mesh::rule(rule)?;
     let faces = mesh::polygons(faces)?;
     let vertices = mesh::positions(vertices)?;
     if let Ok(convex) = ConvexPolyhedron::from_faces(vertices.clone(), &faces) {
@@ -360,13 +366,23 @@ pub(crate) fn polyhedron(vertices: &Bound<'_, PyAny>, faces: &Bound<'_, PyAny>) 
         ))));
     }
     let mesh = mesh::triangulated(vertices, &faces)?;
-    checked(octray::geometry::Solid::mesh(mesh))
+    checked(octray::geometry::Solid::mesh(mesh, rule))
 }
 
 /// The inside of a closed triangle mesh whose triangles run counter-clockwise seen from outside.
+///
+/// With the rule `"strict"` every edge must have two triangles, and nothing may cross, overlap or
+/// face the wrong way: a `ValueError` says what is wrong where. With `"winding"` inside is where
+/// the winding number is not 0, whatever crosses or overlaps and however the mesh is turned; it
+/// must be closed.
 #[pyfunction]
-#[pyo3(signature = (vertices, faces))]
-pub(crate) fn mesh_solid(vertices: &Bound<'_, PyAny>, faces: &Bound<'_, PyAny>) -> PyResult<Solid> {
+#[pyo3(signature = (vertices, faces, rule = "strict"))]
+pub(crate) fn mesh_solid(
+    vertices: &Bound<'_, PyAny>,
+    faces: &Bound<'_, PyAny>,
+    rule: &str,
+) -> PyResult<Solid> {
+    let rule = mesh::rule(rule)?;
     let mesh: Arc<TriangleMesh> = mesh::from_arrays(vertices, faces)?;
-    checked(octray::geometry::Solid::mesh(mesh))
+    checked(octray::geometry::Solid::mesh(mesh, rule))
 }

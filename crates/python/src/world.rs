@@ -7,7 +7,7 @@ use octray::import::dress;
 use octray::math::MAX_DEPTH;
 use octray::math::{Aabb, DVec3};
 use octray::scene;
-use octray::world::{Accel, World, WorldConfig};
+use octray::world::{Accel, AccelError, World, WorldConfig};
 use pyo3::exceptions::{PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
 
@@ -24,15 +24,10 @@ pub(crate) struct Prepared {
     pub(crate) duration: Duration,
 }
 
-/// The accelerator of this name.
+/// The method of this name.
 pub(crate) fn accel_named(name: &str) -> PyResult<Accel> {
-    match name {
-        "auto" => Ok(Accel::Auto),
-        "brute" => Ok(Accel::Brute),
-        _ => Err(PyValueError::new_err(format!(
-            "accel must be \"auto\" or \"brute\", not {name:?}"
-        ))),
-    }
+    name.parse()
+        .map_err(|error: AccelError| PyValueError::new_err(format!("accel: {error}")))
 }
 
 /// How to build, with the limits that are given: the deepest level of the solids' tree, and the bytes

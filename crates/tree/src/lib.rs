@@ -6,7 +6,15 @@
 //! [`WideTree`] finds the items whose boxes a line meets, front to back, eight boxes at a time.
 
 pub mod cell_tree;
+pub mod encoding;
+mod grid;
+mod partition;
+pub mod traversal;
+pub mod triangle_cube;
 pub mod wide_tree;
 
 pub use cell_tree::{Cell, CellTree, CellTreeStats, Criteria, Node, Subdivide, WalkStack};
+pub use encoding::LvsiStore;
+pub use grid::Grid;
+pub use partition::{Division, Encoding, Partition, PartitionStats, Traversal, WalkMemory};
 pub use wide_tree::{WalkCost, WideTree, WideTreeConfig, WideTreeError, WideTreeStats};

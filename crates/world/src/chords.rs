@@ -5,8 +5,8 @@ use octray_math::DVec3;
 use octray_scene::ObjectId;
 
 use crate::line::Line;
-use crate::solids::{Passage, Solids};
-use crate::{Counters, Hit, RayQuery, Region, World};
+use crate::solids::{Passage, Scratch, Solids};
+use crate::{Counters, RayQuery, Region, World};
 
 /// Whose chords are listed where solids overlap.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -42,6 +42,8 @@ pub struct ChordEnd {
     /// Whether the face belongs to another solid, which displaces this one: its outward normal
     /// points into the chord.
     pub displaced: bool,
+    /// Whether the ray enters the solid that the face belongs to.
+    pub entering: bool,
 }
 
 impl Chord {
@@ -85,21 +87,28 @@ impl World {
     ) {
         chords.clear();
         counters.rays += 1;
-        let Some(mut line) = Line::new(query, &self.place) else {
-            return;
-        };
-        if whole_line {
-            line = line.whole();
+        if let Some(line) = self.line(query, whole_line) {
+            self.scratch
+                .with(|scratch| self.add_chords(&line, overlaps, scratch, chords, counters));
         }
-        self.scratch.with(|scratch| {
-            let mut own = std::mem::take(&mut scratch.chords);
-            self.solids
-                .passages(&line, &mut own.passages, scratch, counters);
-            self.solids
-                .unbounded_at_start(&line, &mut own.held, scratch, counters);
-            collect(&self.solids, &line, overlaps, &mut own, chords);
-            scratch.chords = own;
-        });
+    }
+
+    /// Adds the chords of a line to what is there.
+    pub(crate) fn add_chords(
+        &self,
+        line: &Line,
+        overlaps: Overlaps,
+        scratch: &mut Scratch,
+        chords: &mut Vec<Chord>,
+        counters: &mut Counters,
+    ) {
+        let mut own = std::mem::take(&mut scratch.chords);
+        self.solids
+            .passages(line, &mut own.passages, scratch, counters);
+        self.solids
+            .unbounded_at_start(line, &mut own.held, scratch, counters);
+        collect(&self.solids, line, overlaps, &mut own, chords);
+        scratch.chords = own;
     }
 
     /// How many boundaries the ray crosses: where a solid is entered or left, as
@@ -108,38 +117,49 @@ impl World {
         &self,
         query: &RayQuery,
         whole_line: bool,
-        chords: &mut Vec<Chord>,
         counters: &mut Counters,
     ) -> u64 {
-        self.chords(query, whole_line, Overlaps::Priorities, chords, counters);
+        counters.rays += 1;
+        self.line(query, whole_line).map_or(0, |line| {
+            self.scratch
+                .with(|scratch| self.count_on_line(&line, scratch, counters))
+        })
+    }
+
+    pub(crate) fn count_on_line(
+        &self,
+        line: &Line,
+        scratch: &mut Scratch,
+        counters: &mut Counters,
+    ) -> u64 {
+        let mut chords = std::mem::take(&mut scratch.counted);
+        chords.clear();
+        self.add_chords(line, Overlaps::Priorities, scratch, &mut chords, counters);
         let ends = chords.iter().flat_map(|c| [c.enter.face, c.exit.face]);
-        let crossed = ends.filter(|face| *face != FaceId::NONE).count();
+        let crossed = ends.filter(|face| *face != FaceId::NONE).count() as u64;
+        scratch.counted = chords;
         let mut sheets = 0;
-        if let Some(mut line) = Line::new(query, &self.place) {
-            if whole_line {
-                line = line.whole();
-            }
-            self.sheets.visit_line(&line, f64::INFINITY, counters, |_| {
-                sheets += 1;
-                f64::INFINITY
-            });
-        }
-        crossed as u64 + sheets
+        self.sheets.visit_line(line, f64::INFINITY, counters, |_| {
+            sheets += 1;
+            f64::INFINITY
+        });
+        crossed + sheets
     }
 
     /// The unit normal at an end of one of the ray's chords, pointing out of the chord's solid (or
     /// of what is left of it); zero where no face is crossed.
     #[must_use]
     pub fn chord_normal(&self, query: &RayQuery, end: &ChordEnd) -> DVec3 {
+        let normal = || {
+            let line = self.line(query, false)?;
+            let point = self.place.scene_from_world(query.ray.at(end.t));
+            let surface = self.solids.point(&line, end.face, end.entering, point)?;
+            Some(surface.normal)
+        };
         if end.face == FaceId::NONE {
             return DVec3::ZERO;
         }
-        let hit = Hit {
-            t: end.t,
-            face: end.face,
-            ..Hit::MISS
-        };
-        let normal = self.interact(query, &hit).normal;
+        let normal = normal().unwrap_or_default();
         if end.displaced { -normal } else { normal }
     }
 
@@ -148,18 +168,25 @@ impl World {
     pub fn regions(&self, points: &[DVec3], regions: &mut Vec<Region>, counters: &mut Counters) {
         regions.clear();
         self.scratch.with(|scratch| {
-            regions.extend(points.iter().map(|&point| {
-                let query = RayQuery::new(octray_math::Ray::new(point, DVec3::X));
-                match Line::new(&query, &self.place) {
-                    Some(line) => self.solids.region_at(&line, line.origin, scratch, counters),
-                    None => Region::OUTSIDE,
-                }
-            }));
+            let region = |&point: &DVec3| self.region_of(point, scratch, counters);
+            regions.extend(points.iter().map(region));
         });
+    }
+
+    pub(crate) fn region_of(
+        &self,
+        point: DVec3,
+        scratch: &mut Scratch,
+        counters: &mut Counters,
+    ) -> Region {
+        let query = RayQuery::new(octray_math::Ray::new(point, DVec3::X));
+        self.line(&query, false).map_or(Region::OUTSIDE, |line| {
+            self.solids.region_at(&line, line.origin, scratch, counters)
+        })
     }
 }
 
-/// Pairs the passages of a line to chords. `own.held` comes with the unbounded solids that hold the
+/// Pairs the passages of a line to chords, which are added to `chords`. `own.held` comes with the unbounded solids that hold the
 /// start.
 fn collect(
     solids: &Solids,
@@ -176,14 +203,16 @@ fn collect(
     } = own;
     add_held_at_start(passages, held);
     open.clear();
+    let first = chords.len();
     list_visible(solids, overlaps, held, visible);
-    let ends = |s: f64, face: FaceId, displaced: bool| ChordEnd {
+    let without_face = |s: f64| ChordEnd {
         t: line.t(s),
-        face,
-        displaced,
+        face: FaceId::NONE,
+        displaced: false,
+        entering: false,
     };
-    let start = ends(line.origin, FaceId::NONE, false);
-    let never = ends(line.end, FaceId::NONE, false);
+    let start = without_face(line.origin);
+    let never = without_face(line.end);
     let begin = |rank: u32, enter: ChordEnd, chords: &mut Vec<Chord>| {
         let chord = chords.len();
         chords.push(Chord {
@@ -201,8 +230,13 @@ fn collect(
         // Where a solid begins or ends without a passage of its own, the first one's makes it so.
         let end = |rank: u32| {
             let own = group.iter().find(|p| p.rank == rank);
-            let face = own.unwrap_or(&group[0]).face;
-            ends(group[0].s, face, own.is_none())
+            let passage = own.unwrap_or(&group[0]);
+            ChordEnd {
+                t: line.t(passage.s),
+                face: passage.face,
+                displaced: own.is_none(),
+                entering: passage.entering,
+            }
         };
         list_visible(solids, overlaps, held, visible);
         open.retain(|o| {
@@ -219,7 +253,15 @@ fn collect(
         }
     }
     // Far from the ray's origin two parameters may round to one.
-    chords.retain(|chord| chord.enter.t < chord.exit.t);
+    let mut kept = first;
+    for index in first..chords.len() {
+        let chord = chords[index];
+        if chord.enter.t < chord.exit.t {
+            chords[kept] = chord;
+            kept += 1;
+        }
+    }
+    chords.truncate(kept);
 }
 
 /// Enters a solid or leaves it; whether it was left without having been entered.

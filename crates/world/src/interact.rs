@@ -51,7 +51,7 @@ impl World {
     pub fn interact(&self, query: &RayQuery, hit: &Hit) -> SurfaceHit {
         let position = query.ray.at(hit.t);
         let (object, material) = self.owner(hit.face).unwrap_or((ObjectId(0), MaterialId(0)));
-        let line = self.line(query);
+        let line = self.line(query, false);
         let triangle = line
             .as_ref()
             .and_then(|line| self.sheets.point(line, hit.face));
@@ -59,7 +59,7 @@ impl World {
         let of_solid = || {
             line.as_ref().and_then(|line| {
                 let in_scene = self.place.scene_from_world(position);
-                self.solids.point(line, hit.face, in_scene)
+                self.solids.point(line, hit.face, hit.entering, in_scene)
             })
         };
         let TrianglePoint {

@@ -4,7 +4,10 @@
 //! above it. Its answers are the same bits whatever structure finds them: a structure only proposes
 //! what to test, one `f64` function per shape decides, and ties go to the lowest face.
 
+mod accel;
+mod batch;
 mod chords;
+mod faces;
 mod interact;
 mod line;
 mod query;
@@ -12,8 +15,13 @@ mod sheets;
 mod solids;
 mod world;
 
+pub use accel::{Accel, AccelError};
+pub use batch::{Batch, BatchError, Lists, RayRow, row_query};
 pub use chords::{Chord, ChordEnd, Overlaps};
 pub use query::{Counters, Departure, Hit, RayQuery, Region, SurfaceHit};
-pub use world::{Accel, World, WorldConfig, WorldError, WorldStats};
+pub use world::{World, WorldConfig, WorldError, WorldStats};
 
-pub use octray_tree::{CellTreeStats, Criteria, WideTreeConfig, WideTreeError, WideTreeStats};
+pub use octray_tree::{
+    CellTreeStats, Criteria, Division, Encoding, LvsiStore, PartitionStats, Traversal,
+    WideTreeConfig, WideTreeError, WideTreeStats,
+};

@@ -5,6 +5,9 @@ use octray_math::{Aabb, DVec3, Ray};
 
 use crate::{Departure, RayQuery};
 
+/// The bits of a positive number that say its power of two.
+const EXPONENT_BITS: u64 = 0x7ff0_0000_0000_0000;
+
 /// Where the scene is: the coordinates it is worked on in, and its centre in them.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Place {
@@ -48,6 +51,18 @@ pub(crate) struct Line {
     scale: f64,
 }
 
+/// The direction divided by the power of two below its largest component, and that power.
+fn scaled(direction: DVec3, largest: f64) -> (DVec3, f64) {
+    // The same as below, for lengths whose powers are normal numbers.
+    if (1e-300..1e300).contains(&largest) {
+        let power = f64::from_bits(largest.to_bits() & EXPONENT_BITS);
+        return (direction * power.recip(), power);
+    }
+    let exponent = libm::ilogb(largest);
+    let scaled = direction.to_array().map(|x| libm::ldexp(x, -exponent));
+    (DVec3::from_array(scaled), libm::ldexp(1.0, exponent))
+}
+
 impl Line {
     /// `None` for a ray with a NaN, an infinity or no direction: it meets nothing.
     pub(crate) fn new(query: &RayQuery, place: &Place) -> Option<Self> {
@@ -57,9 +72,7 @@ impl Line {
             return None;
         }
         // Powers of two: exact, except for directions so small that they have few digits anyway.
-        let exponent = libm::ilogb(largest);
-        let scale = libm::ldexp(1.0, exponent);
-        let direction = DVec3::from_array(direction.to_array().map(|x| libm::ldexp(x, -exponent)));
+        let (direction, scale) = scaled(direction, largest);
         let unit = Ray::new(origin - place.frame.origin, direction);
         let shift = unit.closest_approach(place.center);
         let ray = unit.shifted(shift);

@@ -153,8 +153,10 @@ pub struct SurfaceHit {
 pub struct Counters {
     /// Rays asked for.
     pub rays: u64,
-    /// Cells of the solids' octree entered.
+    /// Cells of the solids' octree or grid entered, or bounding volumes tested.
     pub cells: u64,
+    /// Rows of a hash table and nodes of a tree looked at to find cells.
+    pub lookups: u64,
     /// Nodes of the triangles' octree entered.
     pub nodes: u64,
     /// Surfaces of solids intersected with a line.
@@ -174,6 +176,7 @@ impl std::ops::AddAssign for Counters {
     fn add_assign(&mut self, other: Self) {
         self.rays += other.rays;
         self.cells += other.cells;
+        self.lookups += other.lookups;
         self.nodes += other.nodes;
         self.surface_tests += other.surface_tests;
         self.triangle_tests += other.triangle_tests;

@@ -1,5 +1,6 @@
 //! The triangles of a world that bound nothing: meshes as sheets.
 
+use std::ops::Range;
 use std::sync::Arc;
 
 use octray_geometry::mesh::{Placement, TrianglePoint, TriangleTree};
@@ -97,6 +98,19 @@ impl Sheets {
         &self.parts[next - 1]
     }
 
+    /// The ids of an object's triangles.
+    pub(crate) fn faces_of(&self, object: ObjectId) -> Range<u32> {
+        let triangle = |part: usize| {
+            let part = self.parts.get(part);
+            let triangle = part.map_or(self.triangles.len() as u32, |p| p.first_triangle);
+            self.first_face + triangle
+        };
+        match self.parts.binary_search_by_key(&object, |p| p.object) {
+            Ok(part) => triangle(part)..triangle(part + 1),
+            Err(_) => 0..0,
+        }
+    }
+
     /// Object and material of a triangle's face.
     pub(crate) fn owner(&self, face: FaceId, scene: &Scene) -> Option<(ObjectId, MaterialId)> {
         let triangle = self.triangle(face)?;
@@ -143,5 +157,6 @@ impl Sheets {
         let part = self.part(triangle);
         part.placement
             .point(&part.mesh, triangle - part.first_triangle, &line.ray)
+            .map(|(point, _)| point)
     }
 }

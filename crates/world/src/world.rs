@@ -7,28 +7,18 @@ use octray_geometry::FaceId;
 use octray_geometry::mesh::MeshError;
 use octray_math::Aabb;
 use octray_scene::{Scene, Shape};
-use octray_tree::{CellTreeStats, Criteria, WideTreeConfig, WideTreeError, WideTreeStats};
+use octray_tree::{Criteria, PartitionStats, WideTreeConfig, WideTreeError, WideTreeStats};
 use thiserror::Error;
 
 use crate::line::{Line, Place};
 use crate::sheets::{SheetHit, Sheets};
 use crate::solids::{Interface, Scratch, Solids};
-use crate::{Counters, Hit, RayQuery, Region};
-
-/// How the nearest surface is found. The answers are the same bits.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Accel {
-    /// Octrees.
-    #[default]
-    Auto,
-    /// Every surface is tested with every ray: the oracle.
-    Brute,
-}
+use crate::{Accel, Counters, Hit, RayQuery, Region};
 
 /// How to prepare a world.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct WorldConfig {
-    /// Octrees or brute force.
+    /// How surfaces are found.
     pub accel: Accel,
     /// When to divide cells.
     pub criteria: Criteria,
@@ -80,8 +70,8 @@ pub struct WorldStats {
     pub faces: usize,
     /// Triangles of sheets.
     pub triangles: usize,
-    /// The octree over the solids.
-    pub cells: Option<CellTreeStats>,
+    /// The cells over the solids.
+    pub cells: Option<PartitionStats>,
     /// The octree over the triangles of sheets.
     pub triangle_tree: Option<WideTreeStats>,
 }
@@ -107,14 +97,15 @@ impl World {
     /// # Errors
     /// See [`WorldError`].
     pub fn prepare(scene: Arc<Scene>, config: &WorldConfig) -> Result<Self, WorldError> {
-        let accelerate = config.accel == Accel::Auto;
         if face_estimate(&scene) > 1 << 30 {
             return Err(WorldError::TooManyFaces);
         }
-        let criteria = accelerate.then_some(&config.criteria);
-        let triangles = accelerate.then_some(&config.triangles);
+        let triangles = match config.accel {
+            Accel::Brute => None,
+            _ => Some(&config.triangles),
+        };
         let place = Place::new(&scene.bounds());
-        let solids = Solids::prepare(&scene, &place.frame, criteria, triangles)
+        let solids = Solids::prepare(&scene, &place.frame, config, triangles)
             .map_err(|(object, error)| WorldError::Mesh { object, error })?;
         let sheets = Sheets::prepare(&scene, &place.frame, solids.face_count(), triangles)?;
         let opaque = scene
@@ -160,7 +151,7 @@ impl World {
             merged_surfaces: self.solids.merged_surfaces(),
             faces: self.solids.face_count() as usize + self.sheets.triangle_count(),
             triangles: self.sheets.triangle_count(),
-            cells: self.solids.tree_stats().cloned(),
+            cells: self.solids.partition_stats().cloned(),
             triangle_tree: self.sheets.triangles().tree_stats().copied(),
         }
     }
@@ -187,8 +178,13 @@ impl World {
         });
     }
 
-    fn closest_one(&self, query: &RayQuery, scratch: &mut Scratch, counters: &mut Counters) -> Hit {
-        let Some(line) = Line::new(query, &self.place) else {
+    pub(crate) fn closest_one(
+        &self,
+        query: &RayQuery,
+        scratch: &mut Scratch,
+        counters: &mut Counters,
+    ) -> Hit {
+        let Some(line) = self.line(query, false) else {
             return Hit::MISS;
         };
         let mut best: Option<Interface> = None;
@@ -237,27 +233,30 @@ impl World {
         blocked.clear();
         counters.rays += queries.len() as u64;
         self.scratch.with(|scratch| {
+            let stops = |face| self.blocks(face);
             blocked.extend(
                 queries
                     .iter()
-                    .map(|query| self.occluded_one(query, scratch, counters)),
+                    .map(|query| self.meets_any(query, &stops, scratch, counters)),
             );
         });
     }
 
-    fn occluded_one(
+    /// Whether any of the faces that count lies on the ray.
+    pub(crate) fn meets_any(
         &self,
         query: &RayQuery,
+        counts: &impl Fn(FaceId) -> bool,
         scratch: &mut Scratch,
         counters: &mut Counters,
     ) -> bool {
-        let Some(line) = Line::new(query, &self.place) else {
+        let Some(line) = self.line(query, false) else {
             return false;
         };
         let found = Cell::new(false);
         // Returns the parameter beyond which nothing matters any more.
         let visit = |s: f64, face: FaceId| {
-            found.set(found.get() || (s < line.end && self.blocks(face)));
+            found.set(found.get() || (s < line.end && counts(face)));
             if found.get() {
                 f64::NEG_INFINITY
             } else {
@@ -297,40 +296,54 @@ impl World {
     ) {
         hits.clear();
         counters.rays += 1;
-        let Some(mut line) = Line::new(query, &self.place) else {
-            return;
-        };
-        if whole_line {
-            line = line.whole();
+        if let Some(line) = self.line(query, whole_line) {
+            self.scratch
+                .with(|scratch| self.add_crossings(&line, scratch, hits, counters));
         }
+    }
+
+    /// Adds the boundaries that are seen on a line to what is there.
+    pub(crate) fn add_crossings(
+        &self,
+        line: &Line,
+        scratch: &mut Scratch,
+        hits: &mut Vec<Hit>,
+        counters: &mut Counters,
+    ) {
         let mut found: Vec<Interface> = Vec::new();
-        self.scratch.with(|scratch| {
-            self.solids
-                .sweep_line(&line, f64::INFINITY, scratch, counters, |change| {
-                    found.extend(change.interface());
-                    f64::INFINITY
-                });
-            let first_sheet = found.len();
-            self.sheets
-                .visit_line(&line, f64::INFINITY, counters, |hit| {
-                    found.push(Interface::of_sheet(hit));
-                    f64::INFINITY
-                });
-            for sheet in &mut found[first_sheet..] {
-                let region = self.solids.region_at(&line, sheet.s, scratch, counters);
-                (sheet.from, sheet.to) = (region, region);
-            }
-        });
+        self.solids
+            .sweep_line(line, f64::INFINITY, scratch, counters, |change| {
+                found.extend(change.interface());
+                f64::INFINITY
+            });
+        let first_sheet = found.len();
+        self.sheets
+            .visit_line(line, f64::INFINITY, counters, |hit| {
+                found.push(Interface::of_sheet(hit));
+                f64::INFINITY
+            });
+        for sheet in &mut found[first_sheet..] {
+            let region = self.solids.region_at(line, sheet.s, scratch, counters);
+            (sheet.from, sheet.to) = (region, region);
+        }
         found.retain(|f| f.s < line.end);
         found.sort_by(|a, b| a.s.total_cmp(&b.s).then(a.face.cmp(&b.face)));
         // Cells overlap a little: what lies there was found twice.
         found.dedup_by_key(|f| (f.s, f.face));
-        hits.extend(found.into_iter().map(|f| f.into_hit(&line)));
+        hits.extend(found.into_iter().map(|f| f.into_hit(line)));
     }
 
-    /// A line through the same space as the query's, for what needs another look at it.
-    pub(crate) fn line(&self, query: &RayQuery) -> Option<Line> {
-        Line::new(query, &self.place)
+    /// The query's line in the coordinates of the scene, `None` for a ray that meets nothing because
+    /// it is none.
+    pub(crate) fn line(&self, query: &RayQuery, whole: bool) -> Option<Line> {
+        let line = Line::new(query, &self.place)?;
+        Some(if whole { line.whole() } else { line })
+    }
+
+    /// Whether the ray is one: finite, with a direction. Others meet nothing.
+    #[must_use]
+    pub fn is_ray(&self, query: &RayQuery) -> bool {
+        self.line(query, false).is_some()
     }
 }
 

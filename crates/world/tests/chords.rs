@@ -138,7 +138,7 @@ fn solids_that_touch_are_two_crossings_and_two_chords() {
     }
     let mut counters = Counters::default();
     let query = RayQuery::new(ray);
-    let count = world.count_crossings(&query, false, &mut Vec::new(), &mut counters);
+    let count = world.count_crossings(&query, false, &mut counters);
     assert_eq!(count, 4);
 }
 

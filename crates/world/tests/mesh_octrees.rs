@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use octray_geometry::{Sheet, Solid, TriangleMesh};
+use octray_geometry::{MeshRule, Sheet, Solid, TriangleMesh};
 use octray_math::{DAffine3, DVec3, Ray, hash_combine, unit_f64};
 use octray_scene::{Material, Object, SceneBuilder};
 use octray_world::{Accel, Counters, Hit, RayQuery, World, WorldConfig};
@@ -29,7 +29,7 @@ fn world(accel: Accel) -> World {
     let mesh = Arc::new(ring(24, 12));
     let mut builder = SceneBuilder::new();
     let material = builder.add_material(Material::default());
-    let solid = Solid::mesh(Arc::clone(&mesh)).expect("closed");
+    let solid = Solid::mesh(Arc::clone(&mesh), MeshRule::Strict).expect("sound");
     let cut = Solid::sphere(1.0).and_then(|s| s.translate(DVec3::new(2.0, 0.0, 0.0)));
     let part = Solid::difference([solid.clone(), cut.expect("valid")]);
     builder.add_object(Object::solid("bitten ring", part, material));

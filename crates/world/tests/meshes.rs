@@ -5,7 +5,7 @@ mod random;
 
 use std::sync::Arc;
 
-use octray_geometry::{Sheet, Solid, TriangleMesh};
+use octray_geometry::{MeshRule, Sheet, Solid, TriangleMesh};
 use octray_math::{DAffine3, DVec3, Ray};
 use octray_scene::{Material, Object, Scene, SceneBuilder};
 use octray_world::{Accel, Counters, Hit, RayQuery, World, WorldConfig};
@@ -130,7 +130,7 @@ proptest! {
         rays in proptest::collection::vec((point(4.0), point(1.0)), 60),
     ) {
         let mesh = cube(3);
-        let mesh_solid = Solid::mesh(Arc::clone(&mesh)).expect("closed");
+        let mesh_solid = Solid::mesh(Arc::clone(&mesh), MeshRule::Strict).expect("sound");
         let cut = Solid::difference([
             mesh_solid.transform(a).expect("invertible"),
             Solid::sphere(1.0).expect("valid").transform(b).expect("invertible"),
@@ -163,7 +163,7 @@ proptest! {
     ) {
         let cuboid = Solid::cuboid(-DVec3::ONE, DVec3::ONE).expect("valid");
         let exact = scene(vec![(Some(cuboid.transform(m).expect("invertible")), None)]);
-        let mesh = Solid::mesh(cube(2)).expect("closed").transform(m).expect("invertible");
+        let mesh = Solid::mesh(cube(2), MeshRule::Strict).expect("sound").transform(m).expect("invertible");
         let meshed = scene(vec![(Some(mesh), None)]);
         let (exact, meshed) = (world(&exact, Accel::Auto), world(&meshed, Accel::Auto));
         for (o, d) in rays {

@@ -38,6 +38,16 @@ def _object_line(index: int, entry: dict[str, Any]) -> str:
     )
 
 
+def _mesh_lines(check: dict[str, Any]) -> list[str]:
+    if check["solid"]:
+        shells = check["shells"]
+        return [f"       bounds a solid of {shells} shell{'s' if shells > 1 else ''}"]
+    closed = "closed, but no" if check["closed"] else "not closed: no"
+    flaws = ", ".join(f"{kind} {count}" for kind, count in check["flaws"].items())
+    places = [f"         {place['message']}" for place in check["places"]]
+    return [f"       {closed} boundary of a solid: {flaws or 'no triangles'}", *places]
+
+
 def _material_line(index: int, entry: dict[str, Any]) -> str:
     look = entry["pattern"] or f"color {_numbers(entry['color'])}"
     if entry["transparent"]:
@@ -63,11 +73,13 @@ def _text(path: str, scene: dict[str, Any]) -> str:
     lines.append(
         f"camera {camera['kind']} at {_numbers(camera['eye'])}" if camera else "camera none"
     )
-    for title, line in (
-        ("objects", _object_line),
-        ("materials", _material_line),
-        ("lights", _light_line),
-    ):
+    lines.append(f"objects {len(scene['objects'])}")
+    for index, entry in enumerate(scene["objects"]):
+        lines.append(_object_line(index, entry))
+        for check in scene["meshes"]:
+            if check["object"] == index:
+                lines.extend(_mesh_lines(check))
+    for title, line in (("materials", _material_line), ("lights", _light_line)):
         entries = scene[title]
         lines.append(f"{title} {len(entries)}")
         lines.extend(line(index, entry) for index, entry in enumerate(entries))
@@ -81,10 +93,12 @@ def _text(path: str, scene: dict[str, Any]) -> str:
 def command(scene: str, facets: bool, strict: bool, as_json: bool, quiet: bool) -> None:
     """Print the objects, materials, lights and bounds of SCENE.
 
+    Of meshes it says whether they bound a solid, and if not, what is wrong where.
     With --strict a warning is an error (exit code 3): a check of the file.
     """
     loaded = load(scene, facets=facets, strict=strict, quiet=quiet)
     described = loaded.describe()
+    described["meshes"] = loaded.check_meshes()
     if as_json:
         described["file"] = scene
         described["warnings"] = [as_dict(diagnostic) for diagnostic in loaded.diagnostics]

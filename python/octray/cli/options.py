@@ -1,4 +1,4 @@
-"""Option values that click does not know: sizes and crops."""
+"""Options that several commands share, and values that click does not know: sizes and crops."""
 
 from __future__ import annotations
 
@@ -13,6 +13,30 @@ if TYPE_CHECKING:
 
 #: A part of the picture: x0 <= x < x1, y0 <= y < y1 in pixels, row 0 at the top.
 Crop = tuple[int, int, int, int]
+
+accel_option = click.option(
+    "--accel",
+    type=click.Choice(["auto", "brute"]),
+    default="auto",
+    show_default=True,
+    help="Octrees, or every surface for every ray: the same answers.",
+)
+threads_option = click.option(
+    "-j",
+    "--threads",
+    type=click.IntRange(min=1),
+    metavar="N",
+    envvar="OCTRAY_THREADS",
+    help="Threads; by default one for each processor.",
+)
+progress_option = click.option(
+    "--progress",
+    type=click.Choice(["auto", "bar", "plain", "none"]),
+    default="auto",
+    show_default=True,
+    help="How progress is shown on standard error.",
+)
+quiet_option = click.option("-q", "--quiet", is_flag=True, help="Only errors on standard error.")
 
 
 def parse_size(

@@ -16,6 +16,17 @@ if TYPE_CHECKING:
     from octray._options import View
 
 
+def check_place(path: Path) -> None:
+    """Refuse, before the work starts, a place where no file can be written."""
+    folder = path.parent
+    if not folder.is_dir():
+        raise FailureError(f"{path}: there is no directory {folder}")
+    if path.is_dir():
+        raise FailureError(f"{path} is a directory")
+    if not os.access(folder, os.W_OK):
+        raise FailureError(f"{path}: no permission to write to {folder}")
+
+
 class Output:
     """A place for one picture, checked before the work starts."""
 
@@ -32,13 +43,7 @@ class Output:
             return
         if self.format not in {"png", "exr"}:
             raise click.UsageError(f"-o {given}: the name must end in .png or .exr (or be -)")
-        folder = self.path.parent
-        if not folder.is_dir():
-            raise FailureError(f"{self.path}: there is no directory {folder}")
-        if self.path.is_dir():
-            raise FailureError(f"{self.path} is a directory")
-        if not os.access(folder, os.W_OK):
-            raise FailureError(f"{self.path}: no permission to write to {folder}")
+        check_place(self.path)
 
     def write(self, image: Image, view: View | None) -> None:
         """Write the picture, or write it again."""

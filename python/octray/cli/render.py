@@ -9,7 +9,15 @@ import click
 
 from octray.cli.exits import Exit, FailureError
 from octray.cli.messages import RejectedSceneError, load
-from octray.cli.options import parse_crop, parse_size, scene_argument
+from octray.cli.options import (
+    accel_option,
+    parse_crop,
+    parse_size,
+    progress_option,
+    quiet_option,
+    scene_argument,
+    threads_option,
+)
 from octray.cli.output import Output
 from octray.cli.progress import Progress, duration
 from octray.cli.report import Report
@@ -32,13 +40,7 @@ if TYPE_CHECKING:
     show_default=True,
     help="Samples per pixel; 1 is the pixel's centre.",
 )
-@click.option(
-    "--accel",
-    type=click.Choice(["auto", "brute"]),
-    default="auto",
-    show_default=True,
-    help="Octrees, or every surface for every ray: the same picture.",
-)
+@accel_option
 @click.option(
     "--tree-depth",
     type=click.IntRange(0, 21),
@@ -51,14 +53,7 @@ if TYPE_CHECKING:
     metavar="MIB",
     help="Most memory of an octree in MiB; what does not fit stays undivided.",
 )
-@click.option(
-    "-j",
-    "--threads",
-    type=click.IntRange(min=1),
-    metavar="N",
-    envvar="OCTRAY_THREADS",
-    help="Threads; by default one for each processor.",
-)
+@threads_option
 @click.option(
     "--view",
     type=click.Choice(["neutral", "standard", "raw"]),
@@ -87,14 +82,8 @@ if TYPE_CHECKING:
     help="Rays that add less than this to a pixel are not followed.",
 )
 @click.option("--json", "as_json", is_flag=True, help="Print one report object.")
-@click.option(
-    "--progress",
-    type=click.Choice(["auto", "bar", "plain", "none"]),
-    default="auto",
-    show_default=True,
-    help="How progress is shown on standard error.",
-)
-@click.option("-q", "--quiet", is_flag=True, help="Only errors on standard error.")
+@progress_option
+@quiet_option
 @click.option("-v", "--verbose", is_flag=True, help="Say what the rendering cost.")
 def command(scene: str, **options: Any) -> int:
     """Render SCENE to a picture.

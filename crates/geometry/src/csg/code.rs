@@ -250,10 +250,18 @@ fn evaluate_at(words: &[u32], at: usize, truth: &impl Fn(FaceId) -> bool) -> boo
     let end = at + 1 + (word >> TAG_BITS) as usize;
     let mut child = at + 1;
     while child < end {
-        if evaluate_at(words, child, truth) == stop_at {
+        // Most operands are literals: these need no call.
+        let word = words[child];
+        let (value, next) = if word & TAG_MASK == LITERAL {
+            (truth(FaceId(word >> TAG_BITS)), child + 1)
+        } else {
+            let next = child + 1 + (word >> TAG_BITS) as usize;
+            (evaluate_at(words, child, truth), next)
+        };
+        if value == stop_at {
             return stop_at;
         }
-        child = body(words, child).end;
+        child = next;
     }
     !stop_at
 }
@@ -274,6 +282,8 @@ pub fn changed_face(
     changed_at(words, 0, target, before, after)
 }
 
+/// The lowest face that takes part in the change to `target` of the operation (or literal) at `at`,
+/// which is known to change.
 fn changed_at(
     words: &[u32],
     at: usize,
@@ -281,14 +291,19 @@ fn changed_at(
     before: &impl Fn(FaceId) -> bool,
     after: &impl Fn(FaceId) -> bool,
 ) -> Option<FaceId> {
-    if evaluate_at(words, at, before) == target || evaluate_at(words, at, after) != target {
-        return None;
-    }
-    if words[at] & TAG_MASK == LITERAL {
-        return Some(FaceId(words[at] >> TAG_BITS));
+    let word = words[at];
+    if word & TAG_MASK == LITERAL {
+        return Some(FaceId(word >> TAG_BITS));
     }
     operands(words, at)
-        .filter_map(|child| changed_at(words, child, target, before, after))
+        .filter_map(|child| {
+            let changes = evaluate_at(words, child, after) == target
+                && evaluate_at(words, child, before) != target;
+            if !changes {
+                return None;
+            }
+            changed_at(words, child, target, before, after)
+        })
         .min()
 }
 

@@ -5,8 +5,13 @@ use std::sync::Arc;
 use octray_math::DAffine3;
 
 use super::code::{Code, Constant, Operation, Writer};
+use super::facets;
+use crate::mesh::FacetPlanes;
+use crate::profile::Formula;
 use crate::surface::{Surface, SurfaceTable};
-use crate::{FaceId, MaterialId, Primitive, SceneFrame, Solid, SolidNode, SurfaceId, TriangleMesh};
+use crate::{
+    Composite, FaceId, MaterialId, Primitive, SceneFrame, Solid, SolidNode, SurfaceId, TriangleMesh,
+};
 
 /// One face of one operand: the literal of the expressions.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -27,6 +32,8 @@ pub struct MeshOperand {
     pub mesh: Arc<TriangleMesh>,
     /// Where it is.
     pub scene_from_mesh: DAffine3,
+    /// The planes that its triangles share with other operands.
+    pub planes: FacetPlanes,
 }
 
 /// An expression, or what it always is.
@@ -36,6 +43,7 @@ pub type Lowered = Result<Code, Constant>;
 #[derive(Debug)]
 pub struct Lowering {
     scene_from_world: DAffine3,
+    scene_size: f64,
     pub(super) table: SurfaceTable,
     faces: Vec<Face>,
     pub(super) meshes: Vec<MeshOperand>,
@@ -52,6 +60,12 @@ struct Context {
     material: Option<MaterialId>,
 }
 
+/// The sides of a composite, and the faces that stand for their insides and outsides so far.
+struct Named {
+    sides: Vec<(SurfaceId, bool)>,
+    faces: Vec<[Option<FaceId>; 2]>,
+}
+
 impl Lowering {
     /// For a scene that is worked on in these coordinates: faces, surfaces and meshes come out in
     /// them.
@@ -59,6 +73,7 @@ impl Lowering {
     pub fn new(frame: &SceneFrame) -> Self {
         Self {
             scene_from_world: frame.scene_from_world(),
+            scene_size: frame.size,
             table: SurfaceTable::new(frame.size, frame.largest()),
             faces: Vec::new(),
             meshes: Vec::new(),
@@ -84,6 +99,7 @@ impl Lowering {
     /// Faces, surfaces and mesh operands; the surface of mesh operand `i` is `surfaces.len() + i`.
     #[must_use]
     pub fn finish(self) -> (Vec<Face>, Vec<Surface>, Vec<MeshOperand>) {
+        let tolerance = self.table.tolerance() * self.scene_size;
         let surfaces = self.table.into_surfaces();
         let mut faces = self.faces;
         for face in &mut faces {
@@ -92,7 +108,9 @@ impl Lowering {
                 face.surface = SurfaceId(surfaces.len() as u32 + from_last);
             }
         }
-        (faces, surfaces, self.meshes)
+        let mut meshes = self.meshes;
+        facets::share_planes(&surfaces, &mut meshes, self.scene_size, tolerance);
+        (faces, surfaces, meshes)
     }
 
     /// How many faces there are so far.
@@ -111,6 +129,9 @@ impl Lowering {
         let of = |b: bool| Some(if b { Constant::True } else { Constant::False });
         match solid.node() {
             SolidNode::Empty => of(context.complemented),
+            SolidNode::Primitive(Primitive::Composite(composite)) => {
+                self.composite(composite, context, writer)
+            }
             SolidNode::Primitive(primitive) => {
                 self.primitive(primitive, context, writer);
                 None
@@ -184,6 +205,67 @@ impl Lowering {
                 },
                 writer,
             );
+            if writer.operand(&mut open, start, constant) {
+                return Some(match operation {
+                    Operation::And => Constant::False,
+                    Operation::Or => Constant::True,
+                });
+            }
+        }
+        writer.close(&open)
+    }
+
+    fn composite(
+        &mut self,
+        composite: &Arc<Composite>,
+        context: &Context,
+        writer: &mut Writer,
+    ) -> Option<Constant> {
+        let primitive = Primitive::Composite(Arc::clone(composite));
+        let sides = self.sides(&primitive, &context.scene_from_here);
+        let mut named = Named {
+            sides,
+            faces: vec![[None; 2]; composite.faces().len()],
+        };
+        self.formula(composite.formula(), &mut named, context, writer)
+    }
+
+    fn formula(
+        &mut self,
+        formula: &Formula,
+        named: &mut Named,
+        context: &Context,
+        writer: &mut Writer,
+    ) -> Option<Constant> {
+        let (operation, parts) = match formula {
+            Formula::Constant(value) if *value != context.complemented => {
+                return Some(Constant::True);
+            }
+            Formula::Constant(_) => return Some(Constant::False),
+            Formula::Side { side, inside } => {
+                let turned = context.complemented == *inside;
+                let (surface, inside_is_positive) = named.sides[*side as usize];
+                let next = FaceId(self.faces.len() as u32);
+                let face = *named.faces[*side as usize][usize::from(turned)].get_or_insert(next);
+                if face == next {
+                    self.faces.push(Face {
+                        surface,
+                        inside_is_positive: inside_is_positive ^ turned,
+                        material: context.material,
+                    });
+                }
+                writer.literal(face);
+                return None;
+            }
+            Formula::All(parts) if context.complemented => (Operation::Or, parts),
+            Formula::Any(parts) if context.complemented => (Operation::And, parts),
+            Formula::All(parts) => (Operation::And, parts),
+            Formula::Any(parts) => (Operation::Or, parts),
+        };
+        let mut open = writer.open(operation);
+        for part in parts {
+            let start = writer.position();
+            let constant = self.formula(part, named, context, writer);
             if writer.operand(&mut open, start, constant) {
                 return Some(match operation {
                     Operation::And => Constant::False,

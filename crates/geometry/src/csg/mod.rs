@@ -7,6 +7,7 @@
 //! of them change at once, and there is a boundary only where the expression changes.
 
 mod code;
+mod facets;
 mod lower;
 mod sides;
 

@@ -5,8 +5,9 @@ use std::sync::Arc;
 use octray_math::{DAffine3, DMat3, DVec3};
 
 use super::lower::{FIRST_MESH, Lowering, MeshOperand};
+use crate::mesh::FacetPlanes;
 use crate::surface::{Canonical, QuadricForm, Surface, points_upward};
-use crate::{Primitive, SurfaceId};
+use crate::{CompositeFace, Primitive, SurfaceId};
 
 impl Lowering {
     /// The surfaces of a primitive, each with whether the inside is on its positive side.
@@ -78,14 +79,30 @@ impl Lowering {
                 .iter()
                 .map(|(normal, offset)| self.plane(scene, *normal, *normal * *offset))
                 .collect(),
+            Primitive::Composite(composite) => composite
+                .faces()
+                .iter()
+                .map(|face| self.composite_face(scene, face))
+                .collect(),
             Primitive::Mesh(mesh) => {
                 let surface = SurfaceId(FIRST_MESH - self.meshes.len() as u32);
                 self.meshes.push(MeshOperand {
+                    planes: FacetPlanes::default(),
                     mesh: Arc::clone(mesh),
                     scene_from_mesh: *scene,
                 });
                 vec![(surface, false)]
             }
+        }
+    }
+
+    fn composite_face(&mut self, scene: &DAffine3, face: &CompositeFace) -> (SurfaceId, bool) {
+        match face {
+            CompositeFace::Plane { normal, point } => self.plane(scene, *normal, *point),
+            CompositeFace::Curved {
+                canonical,
+                from_local,
+            } => self.curved(canonical.clone(), &(*scene * *from_local)),
         }
     }
 

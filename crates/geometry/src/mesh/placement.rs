@@ -24,6 +24,21 @@ pub struct TrianglePoint {
     pub texcoord: Option<DVec2>,
 }
 
+impl TrianglePoint {
+    /// The same seen as the boundary of what is in front: the normal turned round, and the shading
+    /// normal if it does not look that way already.
+    #[must_use]
+    pub fn flipped(self) -> Self {
+        let normal = -self.normal;
+        let towards = |n: DVec3| if n.dot(normal) < 0.0 { -n } else { n };
+        Self {
+            normal,
+            shading_normal: self.shading_normal.map(towards),
+            ..self
+        }
+    }
+}
+
 impl Placement {
     /// By an invertible transform.
     #[must_use]
@@ -54,16 +69,23 @@ impl Placement {
         if self.mirrored { [a, c, b] } else { [a, b, c] }
     }
 
-    /// Normals and texture coordinates where the line crosses a triangle; `None` if it does not.
+    /// Normals and texture coordinates where the line crosses a triangle, and whether it comes from
+    /// the front; `None` if it does not cross it.
     #[must_use]
-    pub fn point(&self, mesh: &TriangleMesh, triangle: u32, ray: &Ray) -> Option<TrianglePoint> {
+    pub fn point(
+        &self,
+        mesh: &TriangleMesh,
+        triangle: u32,
+        ray: &Ray,
+    ) -> Option<(TrianglePoint, bool)> {
         let index = triangle as usize;
         let wound = self.wound(*mesh.triangles().get(index)?);
         let corners = wound.map(|i| {
             self.world_from_mesh
                 .transform_point3(mesh.positions()[i as usize])
         });
-        let [a, b, c] = TriangleRay::new(ray).intersect(corners)?.barycentric;
+        let hit = TriangleRay::new(ray).intersect(corners)?;
+        let [a, b, c] = hit.barycentric;
         let weights = if self.mirrored { [a, c, b] } else { [a, b, c] };
         let shading_normal = mesh.normals().and_then(|normals| {
             let corners = normals.triangles[index].map(|i| normals.values[i as usize]);
@@ -77,11 +99,12 @@ impl Placement {
         });
         let [a, b, c] = corners;
         let normal = unit((b - a).cross(c - a)).unwrap_or(DVec3::ZERO);
-        Some(TrianglePoint {
+        let point = TrianglePoint {
             normal,
             shading_normal,
             texcoord,
-        })
+        };
+        Some((point, hit.entering))
     }
 }
 

@@ -5,25 +5,27 @@ use std::sync::Arc;
 use octray_math::{Aabb, DAffine3, DVec3, Interval, Ray};
 use octray_tree::{WalkCost, WideTreeConfig};
 
-use super::{MeshCrossing, MeshError, Placement, TriangleMesh, TrianglePoint, TriangleTree};
+use super::{
+    FacetPlanes, MeshCrossing, MeshError, Placement, TriangleMesh, TrianglePoint, TriangleTree,
+};
 use crate::MaterialId;
 use crate::surface::Side;
 
 /// A closed mesh in world coordinates.
 ///
 /// A point is inside where its winding number is not zero. For an ordinary mesh that is what one
-/// expects; shells that overlap are united, and a shell that faces inwards within another is a
-/// cavity.
+/// expects; shells that overlap are united, a shell that faces inwards within another is a cavity,
+/// and a mesh that is inside out has the same inside as its reverse.
 #[derive(Clone, Debug)]
 pub struct MeshSolid {
     mesh: Arc<TriangleMesh>,
     placement: Placement,
     triangles: TriangleTree,
+    planes: FacetPlanes,
 }
 
 impl MeshSolid {
-    /// Places a mesh, with an octree over its triangles if there is a configuration. A mesh that
-    /// is inside out as a whole is turned.
+    /// Places a mesh, with an octree over its triangles if there is a configuration.
     ///
     /// # Errors
     /// The mesh is not closed, or the octree would be too large.
@@ -33,20 +35,23 @@ impl MeshSolid {
         config: Option<&WideTreeConfig>,
     ) -> Result<Self, MeshError> {
         mesh.check_closed()?;
-        let mesh = if mesh.is_inside_out() {
-            Arc::new(mesh.reversed())
-        } else {
-            Arc::clone(mesh)
-        };
         let placement = Placement::new(world_from_mesh);
-        let positions = placement.positions(&mesh).collect();
+        let positions = placement.positions(mesh).collect();
         let wound = mesh.triangles().iter().map(|&t| placement.wound(t));
         let triangles = TriangleTree::new(positions, wound.collect(), config)?;
         Ok(Self {
-            mesh,
+            mesh: Arc::clone(mesh),
             placement,
             triangles,
+            planes: FacetPlanes::default(),
         })
+    }
+
+    /// The same with triangles in planes that they share with other operands.
+    #[must_use]
+    pub fn with_planes(mut self, planes: FacetPlanes) -> Self {
+        self.planes = planes;
+        self
     }
 
     /// How many triangles it has.
@@ -76,8 +81,9 @@ impl MeshSolid {
         let start = out.len();
         self.triangles
             .all(ray, Interval::ALL, cost, |triangle, hit| {
+                let bounds = || self.triangles.bounds(triangle);
                 out.push(MeshCrossing {
-                    t: hit.t,
+                    t: self.planes.parameter(ray, triangle, hit, bounds),
                     triangle,
                     entering: hit.entering,
                 });
@@ -135,9 +141,15 @@ impl MeshSolid {
         }
     }
 
-    /// Normals where the line crosses one of the triangles.
+    /// Normals where the line crosses one of the triangles, turned against the line if it enters
+    /// there: a triangle that is wound the wrong way has them turned round.
     #[must_use]
-    pub fn point(&self, ray: &Ray, triangle: u32) -> Option<TrianglePoint> {
-        self.placement.point(&self.mesh, triangle, ray)
+    pub fn point(&self, ray: &Ray, triangle: u32, entering: bool) -> Option<TrianglePoint> {
+        let (point, from_front) = self.placement.point(&self.mesh, triangle, ray)?;
+        Some(if from_front == entering {
+            point
+        } else {
+            point.flipped()
+        })
     }
 }

@@ -1,6 +1,7 @@
 use octray_math::{Aabb, DVec2, DVec3};
 use thiserror::Error;
 
+use super::MeshReport;
 use crate::MaterialId;
 
 /// Why a mesh is refused.
@@ -42,19 +43,13 @@ pub enum MeshError {
     /// As a solid: there are no triangles.
     #[error("the mesh has no triangles, so it has no inside")]
     Empty,
-    /// As a solid: an edge has an unequal number of triangles on its two sides.
-    #[error(
-        "the mesh is not closed: {count} edges have no partner, the first from \
-         ({}, {}, {}) to ({}, {}, {})", from.x, from.y, from.z, to.x, to.y, to.z
-    )]
-    Open {
-        /// How many directed edges lack their reverse.
-        count: usize,
-        /// Start of the first.
-        from: DVec3,
-        /// End of the first.
-        to: DVec3,
-    },
+    /// As a solid: an edge has an unequal number of triangles on its two sides, so there is no
+    /// winding number.
+    #[error("the mesh is not closed, so it has no inside: {0}")]
+    NoInside(Box<MeshReport>),
+    /// As a solid: the mesh is not the boundary of a solid beyond doubt.
+    #[error("the mesh is not the boundary of a solid: {0}")]
+    NotASolid(Box<MeshReport>),
     /// The octree over its triangles would be too large.
     #[error(transparent)]
     Tree(#[from] octray_tree::WideTreeError),

@@ -77,7 +77,8 @@ impl TriangleTree {
         a == b || self.corners(b).into_iter().all(on_plane)
     }
 
-    fn bounds(&self, triangle: u32) -> Aabb {
+    /// The box around a triangle.
+    pub(super) fn bounds(&self, triangle: u32) -> Aabb {
         Aabb::from_points(self.corners(triangle))
     }
 

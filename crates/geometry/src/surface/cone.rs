@@ -6,14 +6,24 @@ use octray_math::{DVec3, roots};
 use super::Side;
 use super::local_box::{LocalBox, decide};
 
+/// With the radius as third coordinate the surface is `x^2 + y^2 = r^2` with its apex at the
+/// origin, however far away that is in space. From the point of the line nearest to it, all three
+/// coefficients are as small as the line is near: a line that passes the apex closely keeps its
+/// digits, and one through it only touches.
 pub(super) fn crossings(slope: f64, o: DVec3, d: DVec3) -> SignChanges {
-    let shift = -o.dot(d) / d.length_squared();
-    let p = o + d * shift;
-    let (radius, growth) = (1.0 + slope * p.z, slope * d.z);
-    let a = d.x * d.x + d.y * d.y - growth * growth;
-    let b = p.x * d.x + p.y * d.y - radius * growth;
-    let rho = (p.x * p.x + p.y * p.y).sqrt();
-    let c = (rho - radius) * (rho + radius);
+    let origin = DVec3::new(o.x, o.y, 1.0 + slope * o.z);
+    let v = DVec3::new(d.x, d.y, slope * d.z);
+    let shift = -origin.dot(v) / v.length_squared();
+    let apart = |rho: f64, radius: f64| (rho - radius) * (rho + radius);
+    let across = |p: DVec3| (p.x * p.x + p.y * p.y).sqrt();
+    if !shift.is_finite() {
+        // Along the axis of a cone that is a cylinder as far as the line goes.
+        return SignChanges::none(apart(across(origin), origin.z) < 0.0);
+    }
+    let p = origin + v * shift;
+    let a = apart(across(v), v.z);
+    let b = p.x * v.x + p.y * v.y - p.z * v.z;
+    let c = apart(across(p), p.z);
     roots::quadratic(a, b, c).moved(shift, 1.0)
 }
 

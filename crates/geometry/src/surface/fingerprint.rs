@@ -5,6 +5,7 @@ use octray_math::{DAffine3, DMat3, DVec3, hash_combine, symmetric};
 
 use super::table::{SURFACE_TOLERANCE, points_upward, upward};
 use super::{Canonical, QuadricForm, Surface};
+use crate::profile::Curve;
 
 /// What surfaces are compared by. Only surfaces of one kind have as many numbers.
 #[derive(Clone, Debug, PartialEq)]
@@ -88,6 +89,28 @@ fn curved(
             put(&[*minor]);
             4
         }
+        Canonical::Extrusion(contour) => {
+            // The axis as a direction, every control point seen along it.
+            let axis = axes.z_axis.normalize();
+            for p in contour.curves().iter().flat_map(Curve::weighted_points) {
+                let at = center + (axes.x_axis * p.x + axes.y_axis * p.y) / p.z;
+                put(&(at - axis * axis.dot(at)).to_array());
+                put(&[p.z]);
+            }
+            put(&upward(axis).to_array());
+            5
+        }
+        Canonical::Revolution(contour) => {
+            // Every control point as the point of the axis at its height and the ellipse there.
+            put(&center.to_array());
+            put(&upward(axes.z_axis.normalize()).to_array());
+            for p in contour.curves().iter().flat_map(Curve::weighted_points) {
+                put(&(center + axes.z_axis * (p.y / p.z)).to_array());
+                put(&ellipse(axes.x_axis, axes.y_axis, p.x / p.z));
+                put(&[p.z]);
+            }
+            6
+        }
     }
 }
 
@@ -103,8 +126,8 @@ fn cone(center: DVec3, axes: &DMat3, [radius, slope]: [f64; 2], numbers: &mut Ve
     let radius = radius + slope * height;
     let growth = slope / along.dot(axis);
     let section = |size: f64| ellipse(axes.x_axis, axes.y_axis, size);
-    // Both nappes belong to it: radius and growth are given up to a common sign, which must not
-    // depend on the frame's own scale.
+    // Both nappes belong to it: radius and growth are given up to a common sign, that of the radius
+    // at a fixed height. (Both are in units of the frame's own radius here.)
     let size = radius + std::f64::consts::SQRT_2 * growth;
     let sign = 1.0_f64.copysign(size);
     numbers.extend((center + along * height).to_array());

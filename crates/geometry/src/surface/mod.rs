@@ -5,11 +5,14 @@
 //! that share a surface share every bit of its crossings.
 
 mod cone;
+mod extrusion;
 mod fingerprint;
+mod found;
 mod local_box;
 mod plane;
 mod polynomial;
 mod quadric;
+mod revolution;
 mod round;
 mod superellipsoid;
 mod table;
@@ -22,6 +25,7 @@ use std::sync::Arc;
 use octray_math::{Aabb, DAffine3, DVec3, Ray};
 
 use crate::Polynomial;
+use crate::profile::Contour;
 use local_box::LocalBox;
 pub(crate) use polynomial::range as polynomial_range;
 pub use quadric::QuadricForm;
@@ -78,6 +82,11 @@ pub enum Canonical {
         /// `[e, n]`: of the cross-section, and of the outline.
         exponents: [f64; 2],
     },
+    /// A closed curve in the xy plane, drawn out along z without end.
+    Extrusion(Arc<Contour>),
+    /// A closed curve in the half-plane of the distance from the z axis (its x, never negative)
+    /// and the height (its y), turned about the axis.
+    Revolution(Arc<Contour>),
 }
 
 /// On which side of a surface all points of a box lie.
@@ -146,7 +155,7 @@ impl Surface {
 
     /// The work of crossing it, in planes.
     #[must_use]
-    pub const fn cost(&self) -> f64 {
+    pub fn cost(&self) -> f64 {
         match self {
             Self::Plane { .. } => 1.0,
             Self::Curved { canonical, .. } => canonical.cost(),
@@ -156,7 +165,7 @@ impl Surface {
 
 impl Canonical {
     /// See [`Surface::crossings`]; the line in the local frame.
-    fn crossings(&self, origin: DVec3, direction: DVec3, visit: impl FnMut(f64)) -> bool {
+    fn crossings(&self, origin: DVec3, direction: DVec3, mut visit: impl FnMut(f64)) -> bool {
         let changes = match self {
             Self::Sphere => round::sphere(origin, direction),
             Self::Cylinder => round::cylinder(origin, direction),
@@ -168,6 +177,12 @@ impl Canonical {
             }
             Self::Superellipsoid { exponents } => {
                 return superellipsoid::crossings(*exponents, origin, direction).report(visit);
+            }
+            Self::Extrusion(contour) => {
+                return extrusion::crossings(contour, origin, direction, &mut visit);
+            }
+            Self::Revolution(contour) => {
+                return revolution::crossings(contour, origin, direction, &mut visit);
             }
         };
         changes.report(visit)
@@ -182,6 +197,8 @@ impl Canonical {
             Self::Quadric(form) => quadric::classify(*form, local),
             Self::Polynomial(polynomial) => polynomial::classify(polynomial, local),
             Self::Superellipsoid { exponents } => superellipsoid::classify(*exponents, local),
+            Self::Extrusion(contour) => extrusion::classify(contour, local),
+            Self::Revolution(contour) => revolution::classify(contour, local),
         }
     }
 
@@ -196,16 +213,20 @@ impl Canonical {
             Self::Quadric(form) => quadric::gradient(*form, p),
             Self::Polynomial(polynomial) => polynomial::gradient(polynomial, p),
             Self::Superellipsoid { exponents } => superellipsoid::gradient(*exponents, p),
+            Self::Extrusion(contour) => extrusion::gradient(contour, p),
+            Self::Revolution(contour) => revolution::gradient(contour, p),
         }
     }
 
-    const fn cost(&self) -> f64 {
+    fn cost(&self) -> f64 {
         match self {
             Self::Sphere | Self::Cylinder => 2.0,
             Self::Cone { .. } | Self::Quadric(_) => 3.0,
             Self::Torus { .. } => 5.0,
             Self::Polynomial(_) => 20.0,
             Self::Superellipsoid { .. } => 40.0,
+            Self::Extrusion(contour) => 2.0 + 2.0 * contour.curves().len() as f64,
+            Self::Revolution(contour) => 5.0 + 5.0 * contour.curves().len() as f64,
         }
     }
 }

@@ -57,15 +57,21 @@ impl SurfaceTable {
     }
 
     /// The id of `surface`, or of the first surface that coincides with it.
+    ///
+    /// A surface that is inserted again gets the same id again, whatever came between: what
+    /// coincides with it and was there before has a lower id, what came later a higher one.
     pub fn insert(&mut self, surface: Surface) -> SurfaceId {
         let fingerprint = Fingerprint::new(&surface, self.scale);
-        for cell in self.neighbours(&fingerprint) {
-            for &id in self.cells.get(&cell).into_iter().flatten() {
-                if self.coincide(&self.fingerprints[id as usize], &fingerprint) {
-                    self.merged += 1;
-                    return SurfaceId(id);
-                }
-            }
+        let first = self
+            .neighbours(&fingerprint)
+            .iter()
+            .filter_map(|cell| self.cells.get(cell))
+            .flatten()
+            .filter(|id| self.coincide(&self.fingerprints[**id as usize], &fingerprint))
+            .min();
+        if let Some(&id) = first {
+            self.merged += 1;
+            return SurfaceId(id);
         }
         let id = self.surfaces.len() as u32;
         self.cells
@@ -75,6 +81,11 @@ impl SurfaceTable {
         self.surfaces.push(surface);
         self.fingerprints.push(fingerprint);
         SurfaceId(id)
+    }
+
+    /// How far two surfaces may be apart to count as one, in units of the scene's size.
+    pub(crate) const fn tolerance(&self) -> f64 {
+        self.tolerance
     }
 
     /// How many insertions found a surface that was there.
@@ -197,6 +208,43 @@ mod tests {
     }
 
     proptest! {
+        #[test]
+        fn any_two_frusta_of_one_cone_share_it(
+            radius in -3.0..3.0f64, growth in -2.0..2.0f64, heights in [-3.0..3.0f64, -3.0..3.0],
+            turned in any::<bool>(),
+        ) {
+            prop_assume!(growth.abs() > 0.01);
+            let tilt = DAffine3::from_rotation_x(if turned { 0.7 } else { 0.0 });
+            let mut table = SurfaceTable::new(5.0, 5.0);
+            let mut frustum = |base: f64| {
+                let own = radius + growth * base;
+                let frame = DAffine3::from_translation(DVec3::new(0.0, 0.0, base))
+                    * DAffine3::from_scale(DVec3::new(own, own, 1.0));
+                table.insert(Surface::Curved {
+                    canonical: Canonical::Cone { slope: growth / own },
+                    local_from_scene: (tilt * frame).inverse(),
+                })
+            };
+            prop_assume!(heights.iter().all(|h| (radius + growth * h).abs() > 0.05));
+            prop_assert_eq!(frustum(heights[0]), frustum(heights[1]));
+        }
+
+        #[test]
+        fn a_surface_inserted_again_is_the_same_whatever_came_between(
+            steps in proptest::collection::vec(-8i32..8, 1..40), at in -1.0..1.0f64,
+        ) {
+            // Coincidence within a tolerance is not transitive; the ids must not depend on luck.
+            let cell = CELL * (SURFACE_TOLERANCE + PLACE_TOLERANCE);
+            let border = libm::round(at / cell) * cell;
+            let offset = |step: i32| border + f64::from(step) * 0.3 * SURFACE_TOLERANCE;
+            let mut table = SurfaceTable::new(1.0, 1.0);
+            let ids: Vec<SurfaceId> =
+                steps.iter().map(|s| table.insert(plane(DVec3::Y, offset(*s)))).collect();
+            for (step, id) in steps.iter().zip(ids).rev() {
+                prop_assert_eq!(table.insert(plane(DVec3::Y, offset(*step))), id);
+            }
+        }
+
         #[test]
         fn cell_borders_do_not_hide_coincidence(offset in -1.0..1.0f64, steps in -300i32..300) {
             // Start on and around a border of a hash cell.

@@ -128,6 +128,18 @@ pub fn moved(mesh: &TriangleMesh, to: impl Fn(DVec3) -> DVec3) -> TriangleMesh {
     TriangleMesh::new(positions, mesh.triangles().to_vec()).unwrap()
 }
 
+/// All triangles of both.
+pub fn together(a: &TriangleMesh, b: &TriangleMesh) -> TriangleMesh {
+    let first = a.positions().len() as u32;
+    let positions = [a.positions(), b.positions()].concat();
+    let moved = b.triangles().iter().map(|t| t.map(|i| i + first));
+    TriangleMesh::new(
+        positions,
+        a.triangles().iter().copied().chain(moved).collect(),
+    )
+    .unwrap()
+}
+
 /// Closed meshes of all kinds: round, flat, thin, tiny, huge, off centre, rough.
 pub fn zoo() -> Vec<(&'static str, TriangleMesh)> {
     let turned = DMat3::from_rotation_x(0.7) * DMat3::from_rotation_z(0.4);
@@ -204,4 +216,23 @@ pub fn nasty_ray(mesh: &TriangleMesh, random: &mut Random) -> Ray {
         _ => target - direction * random.between(-4.0, 4.0),
     };
     Ray::new(origin, direction)
+}
+
+/// Every triangle cut into four, `levels` times; vertices are not shared.
+pub fn divided(mesh: &TriangleMesh, levels: u32) -> TriangleMesh {
+    let mut positions = mesh.positions().to_vec();
+    let mut triangles = mesh.triangles().to_vec();
+    for _ in 0..levels {
+        let mut next = Vec::with_capacity(4 * triangles.len());
+        for [a, b, c] in triangles {
+            let mut middle = |i: u32, j: u32| {
+                positions.push((positions[i as usize] + positions[j as usize]) * 0.5);
+                positions.len() as u32 - 1
+            };
+            let (ab, bc, ca) = (middle(a, b), middle(b, c), middle(c, a));
+            next.extend([[a, ab, ca], [b, bc, ab], [c, ca, bc], [ab, bc, ca]]);
+        }
+        triangles = next;
+    }
+    TriangleMesh::new(positions, triangles).unwrap()
 }

@@ -69,7 +69,7 @@ pub(super) fn add_objects(
         } else {
             name.clone()
         };
-        if let Err(error) = part.add(name, &model, &painted, materials, builder) {
+        if let Err(error) = part.add(name, &model, &painted, materials, builder, diagnostics) {
             diagnostics.error(None, error.to_string());
         }
     }
@@ -175,6 +175,7 @@ impl Part {
         painted: &Painted,
         materials: &Materials,
         builder: &mut SceneBuilder,
+        diagnostics: &mut Diagnostics,
     ) -> Result<(), MeshError> {
         let [positions, texcoords, normals] = self.members;
         let [corners, uv_corners, normal_corners] = self.triangles;
@@ -205,7 +206,7 @@ impl Part {
         if each.iter().any(|&id| id != material) {
             mesh = mesh.with_materials(each)?;
         }
-        let object = mesh_object(name, mesh, material, builder);
+        let object = mesh_object(name, mesh, material, builder, diagnostics);
         builder.add_object(object);
         Ok(())
     }

@@ -7,6 +7,7 @@ use octray_geometry::{ConvexPolyhedron, Solid, TriangleMesh};
 use octray_math::DVec3;
 
 use crate::Span;
+use crate::mesh_object::mesh_solid;
 use crate::polygon::{TooComplex, Triangulator};
 
 use super::arguments::Arguments;
@@ -112,8 +113,13 @@ impl Workshop<'_> {
                 return Polyhedron::Solid(Solid::empty());
             }
         };
-        match Solid::mesh(Arc::clone(&mesh)) {
-            Ok(solid) => Polyhedron::Solid(solid),
+        match mesh_solid(&mesh) {
+            Ok((solid, doubt)) => {
+                if let Some(doubt) = doubt {
+                    self.diagnostics.warning(span, doubt);
+                }
+                Polyhedron::Solid(solid)
+            }
             Err(error) => Polyhedron::Open(mesh, error.to_string()),
         }
     }

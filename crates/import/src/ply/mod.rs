@@ -109,7 +109,7 @@ fn add_mesh(
             builder.add_material(default_material())
         }
     };
-    let object = mesh_object(file_stem(path), mesh, material, builder);
+    let object = mesh_object(file_stem(path), mesh, material, builder, diagnostics);
     builder.add_object(object);
     Ok(())
 }

@@ -9,6 +9,7 @@ use octray_scene::{Interior, Object, SceneBuilder};
 
 use super::object::{Geometry, MeshDef, ObjectDef, Operation};
 use super::texture::Texture;
+use crate::mesh_object::mesh_solid;
 use crate::{Diagnostics, Span};
 
 /// What a part takes over from the objects that it is in.
@@ -42,7 +43,7 @@ pub(super) struct Lowering<'a> {
     /// By what a material says, spelled out.
     pub(super) materials: BTreeMap<String, MaterialId>,
     triangles: BTreeMap<(MaterialId, bool), Batch>,
-    warned: std::collections::BTreeSet<(u32, usize, &'static str)>,
+    warned: std::collections::BTreeSet<(u32, usize, String)>,
 }
 
 impl<'a> Lowering<'a> {
@@ -61,8 +62,12 @@ impl<'a> Lowering<'a> {
         }
     }
 
-    pub(super) fn warn(&mut self, span: Span, message: &'static str) {
-        if self.warned.insert((span.source.0, span.start, message)) {
+    pub(super) fn warn(&mut self, span: Span, message: impl Into<String>) {
+        let message = message.into();
+        if self
+            .warned
+            .insert((span.source.0, span.start, message.clone()))
+        {
             self.diagnostics.warning(span, message);
         }
     }
@@ -341,15 +346,21 @@ impl<'a> Lowering<'a> {
                 solid.transform(*frame).ok()
             }
             Geometry::Mesh(def) if def.has_inside => {
-                let made = Solid::mesh(std::sync::Arc::clone(&def.mesh))
-                    .and_then(|solid| solid.transform(*frame));
-                if made.is_err() {
-                    self.warn(
-                        object.span,
-                        "this mesh is not closed: as operand it is left out",
-                    );
+                let made = mesh_solid(&def.mesh)
+                    .and_then(|(solid, doubt)| Ok((solid.transform(*frame)?, doubt)));
+                match made {
+                    Ok((solid, doubt)) => {
+                        if let Some(doubt) = doubt {
+                            self.warn(object.span, doubt);
+                        }
+                        Some(solid)
+                    }
+                    Err(error) => {
+                        let message = format!("as operand this mesh is left out: {error}");
+                        self.warn(object.span, message);
+                        None
+                    }
                 }
-                made.ok()
             }
             _ => {
                 self.warn(

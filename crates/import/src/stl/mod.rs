@@ -60,7 +60,7 @@ pub fn import(path: &Path, bytes: Vec<u8>, _files: &dyn FileSystem, options: &Op
         }
         match TriangleMesh::new(part.vertices.into_positions(), part.triangles) {
             Ok(mesh) => {
-                let object = mesh_object(part.name, mesh, material, &builder);
+                let object = mesh_object(part.name, mesh, material, &builder, &mut diagnostics);
                 builder.add_object(object);
             }
             Err(error) => diagnostics.error(None, format!("solid `{}`: {error}", part.name)),

@@ -74,3 +74,34 @@ fn concave_polyhedra_are_closed_meshes_that_look_out() {
     assert!((mesh_volume(only(&scene)) - 25.0).abs() < 1e-12);
     assert_eq!(warnings.len(), 1, "{warnings:?}");
 }
+
+#[test]
+fn polyhedra_that_pass_through_themselves_are_taken_by_winding_number_with_a_warning() {
+    // Two tetrahedra in one polyhedron; the second is moved into the first or away from it.
+    let pair = |shift: f64| {
+        let corners = |s: f64| {
+            [
+                [0.0, 0.0, 0.0],
+                [4.0, 0.0, 0.0],
+                [0.0, 4.0, 0.0],
+                [0.0, 0.0, 4.0],
+            ]
+            .map(|[x, y, z]| format!("[{}, {}, {}]", x + s, y + s, z + s))
+            .join(",")
+        };
+        let faces = "[0, 1, 2], [0, 3, 1], [0, 2, 3], [1, 3, 2]";
+        let others = "[4, 5, 6], [4, 7, 5], [4, 6, 7], [5, 7, 6]";
+        format!(
+            "polyhedron(points = [{}, {}], faces = [{faces}, {others}]);",
+            corners(0.0),
+            corners(shift)
+        )
+    };
+    let apart = clean(&pair(10.0));
+    assert!(matches!(primitive(only(&apart)), Primitive::Mesh(_)));
+    let (scene, warnings) = read(&pair(0.5));
+    assert!(matches!(primitive(only(&scene)), Primitive::Mesh(_)));
+    assert_eq!(warnings.len(), 1, "{warnings:?}");
+    assert!(warnings[0].starts_with("a.csg:1:1: warning: the mesh is solid where"));
+    assert!(warnings[0].contains("crossings of triangles: triangles "));
+}

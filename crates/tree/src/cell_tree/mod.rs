@@ -5,6 +5,8 @@
 
 mod build;
 #[cfg(test)]
+pub(crate) mod points;
+#[cfg(test)]
 mod tests;
 mod walk;
 
@@ -41,7 +43,7 @@ pub enum Node {
 const TAG_BITS: u32 = 2;
 
 impl Node {
-    const fn encode(self) -> u32 {
+    pub(crate) const fn encode(self) -> u32 {
         match self {
             Self::Empty(state) => state << TAG_BITS,
             Self::Occupied(leaf) => leaf << TAG_BITS | 1,
@@ -49,7 +51,7 @@ impl Node {
         }
     }
 
-    const fn decode(word: u32) -> Self {
+    pub(crate) const fn decode(word: u32) -> Self {
         let payload = word >> TAG_BITS;
         match word & 3 {
             0 => Self::Empty(payload),
@@ -96,6 +98,19 @@ impl CellTree {
         &self.root
     }
 
+    pub(crate) const fn root_node(&self) -> Node {
+        Node::decode(self.root_node)
+    }
+
+    pub(crate) fn child(&self, block: u32, octant: u32) -> Node {
+        Node::decode(self.blocks[block as usize][octant as usize])
+    }
+
+    /// Bytes of the nodes alone.
+    pub(crate) fn node_bytes(&self) -> u64 {
+        size_of_val(self.blocks.as_slice()) as u64
+    }
+
     /// Figures about the tree.
     #[must_use]
     pub const fn stats(&self) -> &CellTreeStats {
@@ -105,6 +120,24 @@ impl CellTree {
     /// The nodes as they lie in memory, for hashing and comparing.
     pub fn words(&self) -> impl Iterator<Item = u32> + '_ {
         std::iter::once(self.root_node).chain(self.blocks.iter().flatten().copied())
+    }
+
+    /// Visits all leaves in Morton order.
+    pub fn visit_leaves(&self, mut visit: impl FnMut(CellKey, Node)) {
+        let mut stack = vec![(CellKey::ROOT, Node::decode(self.root_node))];
+        while let Some((key, node)) = stack.pop() {
+            match node {
+                Node::Divided(block) => {
+                    let children = &self.blocks[block as usize];
+                    let decoded = (0..8).rev().map(|octant| {
+                        let word = children[octant as usize];
+                        (key.child(octant), Node::decode(word))
+                    });
+                    stack.extend(decoded);
+                }
+                leaf => visit(key, leaf),
+            }
+        }
     }
 
     /// The smallest cell that holds `point`, `None` outside the root.

@@ -38,8 +38,13 @@ impl Slabs {
             }
             return Interval::ALL;
         }
+        // Finite times finite: no NaN, so a plain comparison does, here and below.
         let (a, b) = (low * self.inverse[axis], high * self.inverse[axis]);
-        Interval::new(a.min(b), a.max(b))
+        if a < b {
+            Interval::new(a, b)
+        } else {
+            Interval::new(b, a)
+        }
     }
 
     /// The part of `within` inside the cube grown by the margin.
@@ -53,10 +58,22 @@ impl Slabs {
     /// share six of them.
     #[inline]
     fn halves(&self, min: DVec3, size: f64) -> [[Interval; 2]; 3] {
-        std::array::from_fn(|axis| {
-            [min[axis], min[axis] + size].map(|low| self.slab(axis, low, size))
-        })
+        let both = |axis: usize| {
+            [
+                self.slab(axis, min[axis], size),
+                self.slab(axis, min[axis] + size, size),
+            ]
+        };
+        [both(0), both(1), both(2)]
     }
+}
+
+/// The common part of two intervals without NaN, `None` if they have none.
+#[inline]
+fn common(a: &Interval, b: &Interval) -> Option<Interval> {
+    let start = if a.start > b.start { a.start } else { b.start };
+    let end = if a.end < b.end { a.end } else { b.end };
+    (start <= end).then_some(Interval { start, end })
 }
 
 impl CellTree {
@@ -82,7 +99,7 @@ impl CellTree {
             parallel: d.to_array().map(|x| !x.recip().is_finite()),
             margin: self.root.size().x * (0.5 * Self::CONTENT_MARGIN),
         };
-        let mirror = u32::from(d.x < 0.0) | u32::from(d.y < 0.0) << 1 | u32::from(d.z < 0.0) << 2;
+        let mirror = d.to_array().map(|x| usize::from(x < 0.0));
         let mut limit = within.end;
         let mut entered = 0;
         let span = slabs.clip(self.root.min, self.root.size().x, within);
@@ -109,27 +126,33 @@ impl CellTree {
                     let size = cell.size * 0.5;
                     let children = &self.blocks[block as usize];
                     let [x, y, z] = slabs.halves(cell.min, size);
-                    // The farthest octant is pushed first.
-                    for i in (0..8).rev() {
-                        let octant = i ^ mirror;
-                        let node = children[octant as usize];
-                        if matches!(Node::decode(node), Node::Empty(_)) {
+                    // The farthest octant is pushed first; a half that the line misses takes its
+                    // octants along.
+                    for k in [1, 0].map(|far| far ^ mirror[2]) {
+                        let Some(in_z) = common(&cell.span, &z[k]) else {
                             continue;
-                        }
-                        let upper = [octant & 1, octant >> 1 & 1, octant >> 2 & 1];
-                        let span = cell
-                            .span
-                            .intersection(&x[upper[0] as usize])
-                            .intersection(&y[upper[1] as usize])
-                            .intersection(&z[upper[2] as usize]);
-                        if !span.is_empty() {
-                            let min = cell.min + DVec3::from_array(upper.map(f64::from)) * size;
-                            stack.push(Waiting {
-                                node,
-                                min,
-                                size,
-                                span,
-                            });
+                        };
+                        for j in [1, 0].map(|far| far ^ mirror[1]) {
+                            let Some(in_zy) = common(&in_z, &y[j]) else {
+                                continue;
+                            };
+                            for i in [1, 0].map(|far| far ^ mirror[0]) {
+                                let node = children[i | j << 1 | k << 2];
+                                if matches!(Node::decode(node), Node::Empty(_)) {
+                                    continue;
+                                }
+                                let Some(span) = common(&in_zy, &x[i]) else {
+                                    continue;
+                                };
+                                let upper = DVec3::new(i as f64, j as f64, k as f64);
+                                let min = cell.min + upper * size;
+                                stack.push(Waiting {
+                                    node,
+                                    min,
+                                    size,
+                                    span,
+                                });
+                            }
                         }
                     }
                 }

@@ -14,20 +14,12 @@ impl Solids {
         &self,
         line: &Line,
         face: FaceId,
+        entering: bool,
         position: DVec3,
     ) -> Option<TrianglePoint> {
         if let Some((mesh, triangle)) = self.mesh_triangle(face) {
-            let point = self.meshes[mesh].solid.point(&line.ray, triangle)?;
-            let sign = if self.mesh_is_complemented(mesh) {
-                -1.0
-            } else {
-                1.0
-            };
-            return Some(TrianglePoint {
-                normal: point.normal * sign,
-                shading_normal: point.shading_normal.map(|n| n * sign),
-                texcoord: point.texcoord,
-            });
+            // That the object is entered says which way is out, for complements too.
+            return self.meshes[mesh].solid.point(&line.ray, triangle, entering);
         }
         let face = self.faces.get(face.0 as usize)?;
         let normal = self.surfaces.get(face.surface.0 as usize)?.normal(position);

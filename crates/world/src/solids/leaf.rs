@@ -3,6 +3,8 @@
 use std::collections::HashMap;
 use std::ops::Range;
 
+use octray_geometry::csg::{self, Face};
+
 use super::cells::Content;
 
 /// The contents of all leaves.
@@ -43,7 +45,33 @@ pub(super) struct LeafView<'a> {
     words: &'a [u32],
 }
 
-impl LeafView<'_> {
+impl<'a> LeafView<'a> {
+    /// The same leaf with some of its objects only; `surfaces` is overwritten with theirs.
+    pub(super) fn only<'b>(
+        &self,
+        objects: &'b [LeafObject],
+        surfaces: &'b mut Vec<u32>,
+        faces: &[Face],
+    ) -> LeafView<'b>
+    where
+        'a: 'b,
+    {
+        surfaces.clear();
+        for object in objects {
+            let words = [self.expression(object), self.clip(object).unwrap_or(&[])];
+            let own = words.into_iter().flat_map(csg::faces);
+            surfaces.extend(own.map(|face| faces[face.0 as usize].surface.0));
+        }
+        surfaces.sort_unstable();
+        surfaces.dedup();
+        LeafView {
+            surfaces,
+            objects,
+            base: self.base,
+            words: self.words,
+        }
+    }
+
     pub(super) fn expression(&self, object: &LeafObject) -> &[u32] {
         &self.words[range(object.expression)]
     }

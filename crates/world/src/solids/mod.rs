@@ -3,19 +3,23 @@
 mod cells;
 mod interact;
 mod leaf;
+mod numbering;
 mod prepare;
 mod roots;
 mod sweep;
+mod volumes;
 
 use octray_geometry::csg::Face;
 use octray_geometry::mesh::MeshSolid;
 use octray_geometry::surface::Surface;
 use octray_math::Interval;
 use octray_scene::ObjectId;
-use octray_tree::{CellTree, CellTreeStats, Node};
+use octray_tree::{CellTree, Node, Partition, PartitionStats};
 
 pub(crate) use leaf::Leaves;
 pub(crate) use roots::Scratch;
+use volumes::Volumes;
+
 pub(crate) use sweep::{Change, Interface, Passage};
 
 use crate::line::Line;
@@ -53,10 +57,14 @@ pub(crate) struct Solids {
     ranked: Vec<Ranked>,
     priorities_differ: bool,
     leaves: Leaves,
-    /// The octree over the bounded objects; `None` for brute force and without any.
-    tree: Option<CellTree>,
-    /// The leaf for what lies outside the tree: the unbounded objects, or everything.
+    /// The cells over the bounded objects; `None` for flat methods and without any.
+    cells: Option<Partition>,
+    /// What is tested before an object, by flat methods.
+    volumes: Option<Volumes>,
+    /// The leaf for what lies outside the cells: the unbounded objects, or everything.
     outer: Option<u32>,
+    /// The leaf that holds everything, where the cells do not know what empty space is.
+    whole: Option<u32>,
     merged_surfaces: usize,
 }
 
@@ -75,33 +83,38 @@ impl Solids {
     ) {
         scratch.begin(self.surfaces.len() + self.meshes.len());
         let all = Interval::new(line.origin, line.end);
-        let in_tree = self.tree.as_ref().and_then(|tree| {
-            let margin = tree.root().size().x * (0.5 * CellTree::CONTENT_MARGIN);
-            let span = tree
-                .root()
+        if let Some(volumes) = &self.volumes {
+            self.sweep_volumes(volumes, line, all, limit, scratch, counters, &mut visit);
+            return;
+        }
+        let in_cells = self.cells.as_ref().and_then(|cells| {
+            let margin = cells.bounds().size().max_element() * (0.5 * CellTree::CONTENT_MARGIN);
+            let span = cells
+                .bounds()
                 .inflated(margin)
                 .clip(&line.ray)
                 .intersection(&all);
-            (!span.is_empty()).then_some((tree, span))
+            (!span.is_empty()).then_some((cells, span))
         });
-        let Some((tree, span)) = in_tree else {
+        let Some((cells, span)) = in_cells else {
             self.sweep_outer(line, all, limit, scratch, counters, &mut visit);
             return;
         };
-        // Outside the cube all bounded objects are false, so the outer leaf is right there.
+        // Outside the box all bounded objects are false, so the outer leaf is right there.
         let before = Interval::new(all.start, span.start);
         let mut limit = self.sweep_outer(line, before, limit, scratch, counters, &mut visit);
         let within = Interval::new(span.start, span.end.min(limit));
-        let mut cells = 0;
         if !within.is_empty() {
-            let mut stack = std::mem::take(&mut scratch.stack);
-            cells = tree.walk(&line.ray, within, &mut stack, |leaf, part| {
-                limit = self.sweep(line, leaf, part, limit, scratch, counters, &mut visit);
+            let mut memory = std::mem::take(&mut scratch.walk);
+            let steps = cells.walk(&line.ray, within, &mut memory, |leaf, part| {
+                let view = self.leaves.get(leaf);
+                limit = self.sweep(line, &view, part, limit, scratch, counters, &mut visit);
                 limit
             });
-            scratch.stack = stack;
+            scratch.walk = memory;
+            counters.cells += steps.cells;
+            counters.lookups += steps.lookups;
         }
-        counters.cells += cells;
         let after = Interval::new(span.end, all.end);
         self.sweep_outer(line, after, limit, scratch, counters, &mut visit);
     }
@@ -117,7 +130,8 @@ impl Solids {
     ) -> f64 {
         match self.outer {
             Some(leaf) if part.start <= limit && !part.is_empty() => {
-                self.sweep(line, leaf, part, limit, scratch, counters, visit)
+                let view = self.leaves.get(leaf);
+                self.sweep(line, &view, part, limit, scratch, counters, visit)
             }
             _ => limit,
         }
@@ -167,11 +181,12 @@ impl Solids {
     ) -> Region {
         scratch.begin(self.surfaces.len() + self.meshes.len());
         let point = line.ray.at(s);
-        let located = self.tree.as_ref().and_then(|tree| tree.locate(point));
-        let leaf = match located {
-            Some((_, Node::Empty(state))) => return self.region_of_state(state),
-            Some((_, Node::Occupied(leaf))) => Some(leaf),
-            _ => self.outer,
+        let around = self.cells.as_ref().filter(|c| c.bounds().contains(point));
+        let leaf = match around.map(|cells| cells.locate(point)) {
+            Some(Some(Node::Empty(state))) => return self.region_of_state(state),
+            Some(Some(Node::Occupied(leaf))) => Some(leaf),
+            Some(_) => self.whole,
+            None => self.outer,
         };
         match leaf {
             Some(leaf) => self.region_in(line, leaf, s, scratch, counters),
@@ -195,15 +210,16 @@ impl Solids {
         self.ranked[rank as usize].priority
     }
 
-    pub(crate) fn tree_stats(&self) -> Option<&CellTreeStats> {
-        self.tree.as_ref().map(CellTree::stats)
+    pub(crate) fn partition_stats(&self) -> Option<&PartitionStats> {
+        self.cells.as_ref().map(Partition::stats)
     }
 
     /// The bytes of the tree and its leaves, for hashing.
     pub(crate) fn words(&self) -> impl Iterator<Item = u32> + '_ {
-        let tree = self.tree.iter().flat_map(CellTree::words);
+        let cells = self.cells.iter().flat_map(Partition::words);
         let meshes = self.meshes.iter();
-        tree.chain(self.leaves.words())
+        cells
+            .chain(self.leaves.words())
             .chain(meshes.flat_map(|mesh| mesh.solid.triangles().tree_words()))
     }
 

@@ -4,13 +4,16 @@ use std::cmp::Ordering;
 
 use octray_geometry::csg::{Constant, Face, Lowered, Lowering, MeshOperand};
 use octray_geometry::mesh::{MeshError, MeshSolid};
+use octray_geometry::surface::{PLACE_TOLERANCE, SURFACE_TOLERANCE};
 use octray_geometry::{FaceId, MaterialId, SceneFrame, Sheet, Solid};
 use octray_math::Aabb;
 use octray_scene::{Object, ObjectId, Scene, Shape};
-use octray_tree::{CellTree, Criteria, WideTreeConfig, cell_tree};
+use octray_tree::{Division, Encoding, Partition, WideTreeConfig};
 
 use super::cells::{Cells, Content};
+use super::volumes::Volumes;
 use super::{Leaves, MeshSurface, Ranked, Solids};
+use crate::{Accel, WorldConfig};
 
 /// An object before its rank is known.
 struct Candidate<'a> {
@@ -31,10 +34,12 @@ impl<'a> Candidate<'a> {
         };
         // By the same transforms as the faces, so that rounding far from the origin moves both.
         let scene_from_world = frame.scene_from_world();
+        // What merged surfaces and rounding move, many times over.
+        let slack = 64.0 * (SURFACE_TOLERANCE * frame.size + PLACE_TOLERANCE * frame.largest());
         let bounds = [Some(boundary), clip]
             .into_iter()
             .flatten()
-            .map(|solid| solid.bounds_in(&scene_from_world))
+            .map(|solid| solid.enclosure_in(&scene_from_world, slack))
             .fold(Aabb::ALL, Aabb::intersection);
         let bounds = if bounds.is_empty() {
             Aabb::EMPTY
@@ -66,7 +71,7 @@ impl<'a> Candidate<'a> {
 }
 
 impl Solids {
-    /// The solids of the scene; with `criteria` in an octree, else for brute force. The triangles of
+    /// The solids of the scene, for the method of the configuration. The triangles of
     /// mesh operands get octrees of their own if there is a configuration.
     ///
     /// # Errors
@@ -74,7 +79,7 @@ impl Solids {
     pub(crate) fn prepare(
         scene: &Scene,
         frame: &SceneFrame,
-        criteria: Option<&Criteria>,
+        config: &WorldConfig,
         triangles: Option<&WideTreeConfig>,
     ) -> Result<Self, (String, MeshError)> {
         let objects = scene.objects().iter().enumerate();
@@ -130,28 +135,46 @@ impl Solids {
             .map(|c| c.bounds)
             .filter(Aabb::is_bounded)
             .fold(Aabb::EMPTY, Aabb::union);
+        let object_bounds: Vec<Aabb> = candidates.iter().map(|c| c.bounds).collect();
+        let division = match config.accel {
+            Accel::Auto => Some(Division::default()),
+            Accel::Cells(division) => Some(division),
+            Accel::Brute | Accel::Spheres | Accel::Boxes => None,
+        };
+        let volumes = match config.accel {
+            Accel::Spheres => Some(Volumes::new(&object_bounds, true)),
+            Accel::Boxes => Some(Volumes::new(&object_bounds, false)),
+            _ => None,
+        };
         let mut contents = Vec::new();
-        let mut tree = None;
+        let mut cells = None;
         let mut outer = root;
-        if let Some(criteria) = criteria.filter(|_| !bounds.is_empty()) {
-            let object_bounds: Vec<Aabb> = candidates.iter().map(|c| c.bounds).collect();
-            let cells = Cells {
+        let mut whole = None;
+        if let Some(division) = division.filter(|_| !bounds.is_empty()) {
+            let restricting = Cells {
                 faces: &faces,
                 surfaces: &surfaces,
                 meshes: &meshes,
                 ranked: &ranked,
                 bounds: &object_bounds,
             };
-            let cube = cell_tree::enclosing_cube(&bounds);
-            let (built, leaves) = CellTree::build(cube, outer, &cells, criteria);
+            if matches!(division, Division::Octree(Encoding::Lvsi(_), _)) {
+                whole = Some(outer.clone());
+            }
+            let (built, leaves) =
+                Partition::build(&bounds, outer, &restricting, division, &config.criteria);
             contents = leaves;
-            tree = Some(built);
+            cells = Some(built);
             outer = unbounded;
         }
-        let outer_leaf = (!outer.objects.is_empty() || outer.base != 0).then(|| {
-            contents.push(outer);
-            contents.len() as u32 - 1
-        });
+        let mut leaf_of = |content: Content| {
+            (!content.objects.is_empty() || content.base != 0).then(|| {
+                contents.push(content);
+                contents.len() as u32 - 1
+            })
+        };
+        let whole = whole.and_then(&mut leaf_of);
+        let outer = leaf_of(outer);
         let leaves = Leaves::new(&contents);
         let priorities_differ = ranked
             .windows(2)
@@ -164,8 +187,10 @@ impl Solids {
             ranked,
             priorities_differ,
             leaves,
-            tree,
-            outer: outer_leaf,
+            cells,
+            volumes,
+            outer,
+            whole,
             merged_surfaces,
         })
     }
@@ -257,6 +282,7 @@ fn mesh_surfaces(
             let object = ranked[face_owner[literal as usize] as usize].object;
             (scene.objects()[object.0 as usize].name.clone(), error)
         })?;
+        let solid = solid.with_planes(operand.planes.clone());
         let triangles = solid.triangle_count();
         meshes.push(MeshSurface {
             solid,

@@ -5,11 +5,12 @@ use std::ops::Range;
 
 use super::Solids;
 use super::sweep::Event;
+use super::volumes::VolumeHits;
 use crate::Counters;
-use crate::chords::ChordScratch;
+use crate::chords::{Chord, ChordScratch};
 use crate::line::Line;
 use octray_geometry::FaceId;
-use octray_tree::{WalkCost, WalkStack};
+use octray_tree::{WalkCost, WalkMemory};
 
 /// A crossing of a surface, in the line's parameter.
 #[derive(Clone, Copy, Debug)]
@@ -17,6 +18,16 @@ pub(super) struct Root {
     pub(super) s: f64,
     /// For a mesh: which triangle.
     pub(super) triangle: u32,
+}
+
+impl Root {
+    /// There is one zero: parameters are compared by value and sorted by their bits.
+    fn new(s: f64, triangle: u32) -> Self {
+        Self {
+            s: s + 0.0,
+            triangle,
+        }
+    }
 }
 
 /// Where one surface's roots lie in the scratch.
@@ -57,8 +68,11 @@ pub(crate) struct Scratch {
     pub(super) events: Vec<Event>,
     pub(super) inside: Vec<bool>,
     pub(super) inside_after: Vec<bool>,
-    pub(super) stack: WalkStack,
+    pub(super) walk: WalkMemory,
+    pub(super) volume_hits: VolumeHits,
     pub(crate) chords: ChordScratch,
+    /// Chords that are only counted.
+    pub(crate) counted: Vec<Chord>,
     mesh_roots: Vec<octray_geometry::mesh::MeshCrossing>,
 }
 
@@ -87,12 +101,13 @@ impl Solids {
     ) -> Slot {
         let index = surface as usize;
         if scratch.slots[index].stamp != scratch.stamp {
+            let departed_at = self.departed_at(surface, line, scratch, counters);
             let start = scratch.roots.len();
             let starts_negative = match self.surfaces.get(index) {
                 Some(surface) => {
                     counters.surface_tests += 1;
                     let roots = &mut scratch.roots;
-                    surface.crossings(&line.ray, |s| roots.push(Root { s, triangle: 0 }))
+                    surface.crossings(&line.ray, |s| roots.push(Root::new(s, 0)))
                 }
                 None => {
                     let mesh = &self.meshes[index - self.surfaces.len()].solid;
@@ -101,14 +116,16 @@ impl Solids {
                     mesh.crossings(&line.ray, &mut scratch.mesh_roots, &mut cost);
                     counters.add_walk(&cost);
                     let found = scratch.mesh_roots.iter();
-                    scratch.roots.extend(found.map(|c| Root {
-                        s: c.t,
-                        triangle: c.triangle,
-                    }));
+                    let roots = found.map(|c| Root::new(c.t, c.triangle));
+                    scratch.roots.extend(roots);
                     false
                 }
             };
-            let first = self.first_ahead(surface, line, starts_negative, &scratch.roots[start..]);
+            let roots = &scratch.roots[start..];
+            let mut first = self.first_ahead(surface, line, starts_negative, roots);
+            if departed_at.is_some_and(|s| roots.get(first).is_some_and(|root| root.s == s)) {
+                first += 1;
+            }
             scratch.slots[index] = Slot {
                 stamp: scratch.stamp,
                 start: start as u32,
@@ -118,6 +135,33 @@ impl Solids {
             };
         }
         scratch.slots[index]
+    }
+
+    /// Where the line crosses the surface that it departs from, if that or `surface` is a mesh.
+    ///
+    /// A mesh and another surface may coincide without being one: the crossings at one parameter
+    /// are passed together.
+    fn departed_at(
+        &self,
+        surface: u32,
+        line: &Line,
+        scratch: &mut Scratch,
+        counters: &mut Counters,
+    ) -> Option<f64> {
+        if self.meshes.is_empty() {
+            return None;
+        }
+        let (departed, ..) = self.departed_surface(line)?;
+        let is_mesh = |surface: u32| surface as usize >= self.surfaces.len();
+        if departed == surface || !(is_mesh(departed) || is_mesh(surface)) {
+            return None;
+        }
+        let slot = self.roots(departed, line, scratch, counters);
+        let last_passed = slot.first.checked_sub(1)?;
+        scratch
+            .roots
+            .get((slot.start + last_passed) as usize)
+            .map(|root| root.s)
     }
 
     /// How many of the roots lie behind the start of the ray.

@@ -173,17 +173,16 @@ impl Solids {
     pub(super) fn sweep(
         &self,
         line: &Line,
-        leaf: u32,
+        view: &LeafView<'_>,
         span: Interval,
         mut limit: f64,
         scratch: &mut Scratch,
         counters: &mut Counters,
         visit: &mut impl FnMut(&Change<'_>) -> f64,
     ) -> f64 {
-        let view = self.leaves.get(leaf);
         scratch.events.clear();
         self.place(
-            &view,
+            view,
             line,
             span.start,
             scratch,
@@ -193,9 +192,11 @@ impl Solids {
         if scratch.events.is_empty() {
             return limit;
         }
-        scratch
-            .events
-            .sort_unstable_by(|a, b| a.s.total_cmp(&b.s).then(a.surface.cmp(&b.surface)));
+        if scratch.events.len() > 1 {
+            scratch
+                .events
+                .sort_unstable_by(|a, b| a.s.total_cmp(&b.s).then(a.surface.cmp(&b.surface)));
+        }
         let Scratch {
             events,
             negative,
@@ -203,7 +204,7 @@ impl Solids {
             inside_after,
             ..
         } = scratch;
-        self.memberships(&view, negative, inside);
+        self.memberships(view, negative, inside);
         for group in events.chunk_by(|a, b| a.s == b.s) {
             if group[0].s > limit {
                 break;
@@ -211,11 +212,10 @@ impl Solids {
             for event in group {
                 negative[event.surface as usize] ^= true;
             }
-            self.memberships(&view, negative, inside_after);
-            if inside != inside_after {
+            if self.changes(view, negative, inside, inside_after) {
                 limit = limit.min(visit(&Change {
                     solids: self,
-                    view: &view,
+                    view,
                     group,
                     negative,
                     before: inside,
@@ -249,12 +249,13 @@ impl Solids {
             let (ahead, side) = slot.ahead(roots, start);
             negative[surface as usize] = side;
             if let Some(end) = end {
-                let roots = roots[ahead].iter().take_while(|r| r.s <= end);
-                events.extend(roots.map(|r| Event {
-                    s: r.s,
-                    surface,
-                    triangle: r.triangle,
-                }));
+                for root in roots[ahead].iter().take_while(|r| r.s <= end) {
+                    events.push(Event {
+                        s: root.s,
+                        surface,
+                        triangle: root.triangle,
+                    });
+                }
             }
         }
     }
@@ -266,11 +267,29 @@ impl Solids {
 
     fn memberships(&self, view: &LeafView<'_>, negative: &[bool], inside: &mut Vec<bool>) {
         inside.clear();
-        inside.extend(
-            view.objects.iter().map(|object| {
-                evaluate(view.expression(object), &|face| self.truth(negative, face))
-            }),
-        );
+        for object in view.objects {
+            let truth = |face| self.truth(negative, face);
+            inside.push(evaluate(view.expression(object), &truth));
+        }
+    }
+
+    /// The same as `memberships`, to `after`; whether it differs from `before`.
+    fn changes(
+        &self,
+        view: &LeafView<'_>,
+        negative: &[bool],
+        before: &[bool],
+        after: &mut Vec<bool>,
+    ) -> bool {
+        let mut changed = false;
+        after.clear();
+        for (object, before) in view.objects.iter().zip(before) {
+            let truth = |face| self.truth(negative, face);
+            let now = evaluate(view.expression(object), &truth);
+            changed |= now != *before;
+            after.push(now);
+        }
+        changed
     }
 
     /// The region, given which of the leaf's objects one is in.

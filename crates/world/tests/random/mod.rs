@@ -1,9 +1,13 @@
 //! Random solids, coincident faces preferred: coordinates come from a coarse grid.
 
+mod profiles;
+
 use octray_geometry::surface::SURFACE_TOLERANCE;
 use octray_geometry::{Polynomial, Solid};
-use octray_math::{DAffine3, DVec3, transform};
+use octray_math::{DAffine3, DVec2, DVec3, transform};
 use proptest::prelude::*;
+
+pub(crate) use profiles::{Profile, profile};
 
 /// A solid and, independently of it, a function that says which points are inside.
 #[derive(Clone, Debug)]
@@ -24,6 +28,9 @@ pub(crate) enum Recipe {
     /// A torus as a quartic.
     Quartic(f64, f64),
     Superellipsoid(f64, f64),
+    /// A region drawn out between two heights, and turned about the axis.
+    Prism(Profile, f64, f64),
+    Lathe(Profile),
     Moved(Box<Recipe>, DAffine3),
     Union(Box<Recipe>, Box<Recipe>),
     Intersection(Box<Recipe>, Box<Recipe>),
@@ -64,6 +71,12 @@ impl Recipe {
                 let flat = p.abs().min_element().min(1.0);
                 (value < 0.0, value.abs().min(flat))
             }
+            Self::Prism(profile, z0, z1) => {
+                let (inside, margin) = profile.contains(p.truncate());
+                let (within, height) = signed(slab(*z0, *z1));
+                (inside && within, margin.min(height))
+            }
+            Self::Lathe(profile) => profile.contains(DVec2::new(rho, p.z)),
             Self::Moved(inner, m) => inner.contains(m.inverse().transform_point3(p)),
             Self::Complement(a) => {
                 let (inside, margin) = a.contains(p);
@@ -168,6 +181,8 @@ fn primitive() -> impl Strategy<Value = Model> {
         quadric().prop_map(Recipe::Quadric),
         (length(), length()).prop_map(|(major, minor)| Recipe::Quartic(major, minor)),
         (exponent(), exponent()).prop_map(|(e, n)| Recipe::Superellipsoid(e, n)),
+        (profile(false), grid(), length()).prop_map(|(p, z, h)| Recipe::Prism(p, z, z + h)),
+        profile(true).prop_map(Recipe::Lathe),
     ];
     recipe.prop_map(|recipe| {
         let solid = match &recipe {
@@ -181,6 +196,8 @@ fn primitive() -> impl Strategy<Value = Model> {
                 Polynomial::new(4, &torus(*major, *minor)).and_then(Solid::polynomial)
             }
             Recipe::Superellipsoid(e, n) => Solid::superellipsoid(*e, *n),
+            Recipe::Prism(profile, z0, z1) => Solid::prism(&profile.region, *z0, *z1),
+            Recipe::Lathe(profile) => Solid::lathe(&profile.region),
             _ => unreachable!("only primitives are made above"),
         };
         Model {

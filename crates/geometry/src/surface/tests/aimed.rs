@@ -268,7 +268,9 @@ fn exact_value(canonical: &Canonical, [x, y, z]: [Double; 3]) -> Double {
                 sum + number(*c) * power(x, i) * power(y, j) * power(z, k)
             })
         }
-        Canonical::Superellipsoid { .. } => unreachable!("has no exact oracle"),
+        Canonical::Superellipsoid { .. } | Canonical::Extrusion(_) | Canonical::Revolution(_) => {
+            unreachable!("has no exact oracle")
+        }
     }
 }
 

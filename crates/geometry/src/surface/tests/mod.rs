@@ -8,7 +8,7 @@ mod tangent;
 
 use std::sync::Arc;
 
-use octray_math::DVec3;
+use octray_math::{DVec2, DVec3};
 use proptest::prelude::*;
 
 use super::{Canonical, QuadricForm, Surface};
@@ -102,5 +102,14 @@ pub(crate) fn implicit_value(surface: &Surface, p: DVec3) -> f64 {
             }
             norm(2.0 / n, round, q.z) - 1.0
         }
+        Canonical::Extrusion(contour) => outside(contour.contains(q.truncate())),
+        Canonical::Revolution(contour) => {
+            outside(contour.contains(DVec2::new(q.truncate().length(), q.z)))
+        }
     }
+}
+
+/// Only the sign means something.
+fn outside(inside: bool) -> f64 {
+    if inside { -1.0 } else { 1.0 }
 }

@@ -1,0 +1,141 @@
+//! Plane regions: what prisms and lathes are made of.
+
+use octray_math::DVec2;
+
+use super::pieces;
+use crate::ShapeError;
+
+/// The most edges a region may have.
+pub const MAX_EDGES: usize = 1 << 20;
+
+/// How an outline goes on to its next point.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Edge {
+    /// Straight.
+    Line,
+    /// A quadratic Bézier curve with this control point.
+    Quadratic(DVec2),
+    /// A cubic Bézier curve with these control points.
+    Cubic(DVec2, DVec2),
+    /// A circular arc about this centre; a whole circle if it ends where it began.
+    Arc {
+        /// As far from both ends.
+        center: DVec2,
+        /// Which way round.
+        clockwise: bool,
+    },
+}
+
+/// A closed curve of edges in the plane.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Outline {
+    start: DVec2,
+    edges: Vec<(Edge, DVec2)>,
+}
+
+impl Outline {
+    /// One that begins here.
+    #[must_use]
+    pub const fn starting_at(start: DVec2) -> Self {
+        Self {
+            start,
+            edges: Vec::new(),
+        }
+    }
+
+    /// The polygon with these corners; the last one is joined to the first.
+    #[must_use]
+    pub fn polygon(corners: &[DVec2]) -> Self {
+        let mut outline = Self::starting_at(corners.first().copied().unwrap_or_default());
+        for &corner in corners.iter().skip(1) {
+            outline.push(Edge::Line, corner);
+        }
+        outline
+    }
+
+    /// A circle.
+    #[must_use]
+    pub fn circle(center: DVec2, radius: f64) -> Self {
+        let start = center + DVec2::X * radius;
+        let mut outline = Self::starting_at(start);
+        let clockwise = false;
+        outline.push(Edge::Arc { center, clockwise }, start);
+        outline
+    }
+
+    /// Goes on along `edge` to `to`.
+    pub fn push(&mut self, edge: Edge, to: DVec2) {
+        self.edges.push((edge, to));
+    }
+
+    /// The edges with their ends, closed by a straight one where the last does not end at the
+    /// start.
+    pub(super) fn closed(&self) -> impl Iterator<Item = (DVec2, Edge, DVec2)> + '_ {
+        let last = self.edges.last().map_or(self.start, |(_, to)| *to);
+        let closing = (last != self.start).then_some((Edge::Line, self.start));
+        let edges = self.edges.iter().copied().chain(closing);
+        edges.scan(self.start, |from, (edge, to)| {
+            let edge = (*from, edge, to);
+            *from = to;
+            Some(edge)
+        })
+    }
+}
+
+/// A bounded region of the plane: the points that an odd number of outlines goes round.
+///
+/// Outlines may be in any order and orientation, be nested, touch, cross and repeat points.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Region {
+    pub(super) pieces: Vec<pieces::Piece>,
+    bounds: [DVec2; 2],
+}
+
+impl Region {
+    /// The region within these outlines.
+    ///
+    /// # Errors
+    /// A coordinate is not finite, an arc's ends are not equally far from its centre (within 1e-6
+    /// of its radius), there are more than [`MAX_EDGES`] edges, or nothing that could enclose an area.
+    pub fn new(outlines: &[Outline]) -> Result<Self, ShapeError> {
+        let count: usize = outlines.iter().map(|o| o.edges.len() + 1).sum();
+        if count > MAX_EDGES {
+            return Err(ShapeError::BadProfile("has too many edges"));
+        }
+        let mut pieces = Vec::with_capacity(count);
+        for outline in outlines {
+            for (from, edge, to) in outline.closed() {
+                pieces::append(from, edge, to, &mut pieces)?;
+            }
+        }
+        let Some(first) = pieces.first() else {
+            return Err(ShapeError::BadProfile("has no area"));
+        };
+        let mut bounds = first.curve().bounds();
+        for piece in &pieces {
+            let [low, high] = piece.curve().bounds();
+            bounds = [bounds[0].min(low), bounds[1].max(high)];
+        }
+        if !(bounds[1] - bounds[0]).is_finite() {
+            return Err(ShapeError::BadProfile("is too large"));
+        }
+        if (bounds[1] - bounds[0]).min_element() <= 0.0 {
+            return Err(ShapeError::BadProfile("has no area"));
+        }
+        Ok(Self { pieces, bounds })
+    }
+
+    /// The region within one polygon.
+    ///
+    /// # Errors
+    /// Like [`Region::new`].
+    pub fn polygon(corners: &[DVec2]) -> Result<Self, ShapeError> {
+        Self::new(&[Outline::polygon(corners)])
+    }
+
+    /// A box around it: lowest and highest corner.
+    #[must_use]
+    pub const fn bounds(&self) -> [DVec2; 2] {
+        self.bounds
+    }
+}

@@ -1,0 +1,5 @@
+//! Other ways to keep the cells of a [`crate::CellTree`].
+
+mod lvsi;
+
+pub use lvsi::{Found, Lvsi, LvsiStats, LvsiStore, TableSize};

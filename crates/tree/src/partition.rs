@@ -1,0 +1,273 @@
+//! A partition of space into cells, kept and walked in one of several ways: the table of what can be
+//! combined.
+
+use octray_math::{Aabb, DVec3, Interval, Ray};
+
+use crate::cell_tree::{
+    CellTree, CellTreeStats, Criteria, Node, Subdivide, WalkStack, enclosing_cube,
+};
+use crate::encoding::{Lvsi, LvsiStats, LvsiStore, TableSize};
+use crate::grid::Grid;
+use crate::traversal::{LeafSearch, Steps, TreePath};
+
+/// How an octree is kept.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Encoding {
+    /// Nodes that point to their children.
+    #[default]
+    Tree,
+    /// A hash table of the leaves; see [`Lvsi`].
+    Lvsi(LvsiStore),
+}
+
+/// How an octree is walked.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Traversal {
+    /// Front to back from the root: [`CellTree::walk`].
+    #[default]
+    Ordered,
+    /// [`CellTree::walk_neighbours`].
+    FujimotoIwata,
+    /// [`LeafSearch::walk_units`].
+    Sung,
+}
+
+/// How space is divided.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Division {
+    /// Into cubes, adaptively.
+    Octree(Encoding, Traversal),
+    /// Into equal voxels: so many on each axis, or as [`Grid::resolution_for`] finds.
+    Grid(Option<u32>),
+}
+
+impl Default for Division {
+    fn default() -> Self {
+        Self::Octree(Encoding::Tree, Traversal::Ordered)
+    }
+}
+
+impl Division {
+    /// Why this combination makes no sense, if it does not.
+    #[must_use]
+    pub const fn objection(self) -> Option<&'static str> {
+        match self {
+            Self::Octree(Encoding::Lvsi(_), Traversal::Ordered) => Some(
+                "the ordered traversal goes from a cell to its children, and the hash table knows only leaves: use `sung` with it",
+            ),
+            Self::Octree(Encoding::Lvsi(_), Traversal::FujimotoIwata) => Some(
+                "the traversal of Fujimoto and Iwata goes up and down the tree, and the hash table knows only leaves: use `sung` with it",
+            ),
+            Self::Grid(Some(0)) => Some("a grid needs at least one voxel on an axis"),
+            Self::Grid(Some(n)) if n > Grid::MAX_RESOLUTION => {
+                Some("a grid may have at most 1024 voxels on an axis")
+            }
+            _ => None,
+        }
+    }
+}
+
+/// The deepest Basic Traversal Units where empty space is not stored: a line takes up to three times
+/// 2^depth steps through it.
+const UNITS_DEPTH: u32 = 10;
+
+/// Cells and the way to walk them.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Partition {
+    bounds: Aabb,
+    cells: Cells,
+    stats: PartitionStats,
+}
+
+#[derive(Clone, Debug, PartialEq)]
+enum Cells {
+    Ordered(CellTree),
+    FujimotoIwata(CellTree),
+    Sung(CellTree),
+    Lvsi(Lvsi),
+    Grid(Grid),
+}
+
+/// What was built.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct PartitionStats {
+    /// Cells by kind, with the bytes of the nodes as they are kept and of the contents. Of a grid:
+    /// voxels, at depth 0.
+    pub cells: CellTreeStats,
+    /// The hash table, if there is one.
+    pub lvsi: Option<LvsiStats>,
+    /// Voxels on each axis, of a grid.
+    pub resolution: Option<[u32; 3]>,
+}
+
+/// Working memory of a walk.
+#[derive(Clone, Debug, Default)]
+pub struct WalkMemory {
+    stack: WalkStack,
+    path: TreePath,
+}
+
+impl Partition {
+    /// Divides the space around `bounds`; returns the contents of the occupied cells too.
+    ///
+    /// A grid is refined as far as `criteria` give memory. Works inside the current thread pool; the
+    /// result does not depend on it. An invalid combination ([`Division::objection`]) is built as its
+    /// nearest valid one.
+    pub fn build<S: Subdivide>(
+        bounds: &Aabb,
+        content: S::Content,
+        subdivide: &S,
+        division: Division,
+        criteria: &Criteria,
+    ) -> (Self, Vec<S::Content>) {
+        match division {
+            Division::Octree(encoding, traversal) => {
+                Self::octree(bounds, content, subdivide, (encoding, traversal), criteria)
+            }
+            Division::Grid(resolution) => {
+                Self::grid(bounds, content, subdivide, resolution, criteria)
+            }
+        }
+    }
+
+    fn octree<S: Subdivide>(
+        bounds: &Aabb,
+        content: S::Content,
+        subdivide: &S,
+        (encoding, traversal): (Encoding, Traversal),
+        criteria: &Criteria,
+    ) -> (Self, Vec<S::Content>) {
+        let mut criteria = *criteria;
+        if encoding == Encoding::Lvsi(LvsiStore::Occupied) {
+            criteria.max_depth = criteria.max_depth.min(UNITS_DEPTH);
+        }
+        let (tree, contents) =
+            CellTree::build(enclosing_cube(bounds), content, subdivide, &criteria);
+        let mut stats = PartitionStats {
+            cells: tree.stats().clone(),
+            ..PartitionStats::default()
+        };
+        let bounds = *tree.root();
+        let cells = match (encoding, traversal) {
+            (Encoding::Tree, Traversal::Ordered) => Cells::Ordered(tree),
+            (Encoding::Tree, Traversal::FujimotoIwata) => Cells::FujimotoIwata(tree),
+            (Encoding::Tree, Traversal::Sung) => Cells::Sung(tree),
+            (Encoding::Lvsi(store), _) => {
+                let table = Lvsi::new(&tree, store, TableSize::Prime);
+                let lvsi = table.stats();
+                stats.cells.bytes = stats.cells.bytes - tree.node_bytes() + lvsi.bytes;
+                stats.lvsi = Some(lvsi);
+                Cells::Lvsi(table)
+            }
+        };
+        let partition = Self {
+            bounds,
+            cells,
+            stats,
+        };
+        (partition, contents)
+    }
+
+    fn grid<S: Subdivide>(
+        bounds: &Aabb,
+        content: S::Content,
+        subdivide: &S,
+        resolution: Option<u32>,
+        criteria: &Criteria,
+    ) -> (Self, Vec<S::Content>) {
+        let parts = match subdivide.describe(&content) {
+            crate::Cell::Empty(_) => 0,
+            crate::Cell::Occupied { parts, .. } => u64::from(parts),
+        };
+        // Room on every side, so that flat things have a box and nothing lies in its faces.
+        let size = bounds.size().max_element();
+        let bounds = bounds.inflated(if size > 0.0 { size / 1024.0 } else { 1.0 });
+        // Most of the memory is for the contents.
+        let limit = (criteria.memory_limit / 64).clamp(1, 1 << 30);
+        let resolution = match resolution {
+            Some(n) => [n.clamp(1, Grid::MAX_RESOLUTION); 3],
+            None => Grid::resolution_for(&bounds, parts, limit),
+        };
+        let (grid, contents) = Grid::build(bounds, content, subdivide, resolution);
+        let held: u64 = contents.iter().map(|c| subdivide.bytes(c)).sum();
+        let voxels = resolution.iter().map(|n| u64::from(*n)).product::<u64>();
+        let stats = PartitionStats {
+            cells: CellTreeStats {
+                empty: voxels - grid.occupied(),
+                occupied: grid.occupied(),
+                bytes: grid.bytes() + held,
+                ..CellTreeStats::default()
+            },
+            resolution: Some(resolution),
+            ..PartitionStats::default()
+        };
+        let partition = Self {
+            bounds,
+            cells: Cells::Grid(grid),
+            stats,
+        };
+        (partition, contents)
+    }
+
+    /// The box that is divided.
+    #[must_use]
+    pub const fn bounds(&self) -> &Aabb {
+        &self.bounds
+    }
+
+    /// What was built.
+    #[must_use]
+    pub const fn stats(&self) -> &PartitionStats {
+        &self.stats
+    }
+
+    /// The structure as it lies in memory, for hashing and comparing.
+    pub fn words(&self) -> Box<dyn Iterator<Item = u32> + '_> {
+        match &self.cells {
+            Cells::Ordered(tree) | Cells::FujimotoIwata(tree) | Cells::Sung(tree) => {
+                Box::new(tree.words())
+            }
+            Cells::Lvsi(table) => Box::new(table.words()),
+            Cells::Grid(grid) => Box::new(grid.words()),
+        }
+    }
+
+    /// What lies at a point inside the box; `None` where the structure does not say, because a hash
+    /// table of occupied cells knows nothing of the others.
+    #[must_use]
+    pub fn locate(&self, point: DVec3) -> Option<Node> {
+        match &self.cells {
+            Cells::Ordered(tree) | Cells::FujimotoIwata(tree) | Cells::Sung(tree) => {
+                tree.locate(point).map(|(_, node)| node)
+            }
+            Cells::Lvsi(table) => table.locate(&self.bounds, point),
+            Cells::Grid(grid) => grid.locate(point),
+        }
+    }
+
+    /// Visits the occupied cells that the line meets in `within`, front to back.
+    ///
+    /// `visit` gets the index of the contents and the part of the line inside the cell (grown by
+    /// half of [`CellTree::CONTENT_MARGIN`]); it returns the parameter beyond which nothing
+    /// matters any more.
+    pub fn walk(
+        &self,
+        ray: &Ray,
+        within: Interval,
+        memory: &mut WalkMemory,
+        visit: impl FnMut(u32, Interval) -> f64,
+    ) -> Steps {
+        match &self.cells {
+            Cells::Ordered(tree) => Steps {
+                cells: tree.walk(ray, within, &mut memory.stack, visit),
+                lookups: 0,
+            },
+            Cells::FujimotoIwata(tree) => {
+                tree.walk_neighbours(ray, within, &mut memory.path, visit)
+            }
+            Cells::Sung(tree) => tree.walk_units(&self.bounds, ray, within, visit),
+            Cells::Lvsi(table) => table.walk_units(&self.bounds, ray, within, visit),
+            Cells::Grid(grid) => grid.walk(ray, within, visit),
+        }
+    }
+}

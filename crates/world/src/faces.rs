@@ -1,0 +1,35 @@
+//! How faces are numbered: in the scene, and within their object.
+
+use octray_geometry::FaceId;
+use octray_scene::ObjectId;
+
+use crate::World;
+
+impl World {
+    /// How many faces an object has: triangles of its meshes, and faces of its other parts.
+    #[must_use]
+    pub fn face_count(&self, object: ObjectId) -> u32 {
+        let sheet = self.sheets.faces_of(object);
+        let [triangles, others] = self.solids.faces_of(object);
+        (sheet.len() + triangles.len() + others.len()) as u32
+    }
+
+    /// A face's object, and its number among that object's faces, from 0: triangles of meshes in
+    /// the order of the mesh, then the faces of other parts. So for a mesh it is the triangle.
+    ///
+    /// `None` for [`FaceId::NONE`] and faces of other worlds.
+    #[must_use]
+    pub fn face_in_object(&self, face: FaceId) -> Option<(ObjectId, u32)> {
+        let (object, _) = self.owner(face)?;
+        if !self.solids.has(face) {
+            return Some((object, face.0 - self.sheets.faces_of(object).start));
+        }
+        let [triangles, others] = self.solids.faces_of(object);
+        let number = if triangles.contains(&face.0) {
+            face.0 - triangles.start
+        } else {
+            triangles.len() as u32 + face.0.checked_sub(others.start)?
+        };
+        Some((object, number))
+    }
+}

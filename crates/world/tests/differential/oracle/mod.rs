@@ -1,0 +1,265 @@
+//! Which object a point of a ray belongs to, from the definitions of the primitives alone.
+//!
+//! Nothing here knows faces, surfaces, roots or octrees: the user's tree of solids is evaluated at
+//! a point whose coordinates are exact. Clearances are computed in `f64`, again to about 100 bits
+//! where that is too coarse, and a disagreement is only believed when whole numbers of any size
+//! confirm it (see [`exact`]).
+
+mod clearance;
+mod exact;
+mod frame;
+mod number;
+mod proposals;
+mod sight;
+
+use std::cmp::Ordering;
+
+use octray_geometry::surface::{PLACE_TOLERANCE, SURFACE_TOLERANCE};
+use octray_geometry::{Primitive, SceneFrame, Solid, SolidNode};
+use octray_math::{Aabb, DAffine3, DVec3, Ray};
+use octray_scene::{Scene, Shape};
+
+use clearance::extent;
+use exact::ExactFrame;
+use frame::Frame;
+
+pub(crate) use sight::Sight;
+
+/// What is known of a yes-or-no question: `None` where rounding may decide it.
+pub(crate) type Answer = Option<bool>;
+
+/// A primitive where it stands.
+#[derive(Debug)]
+struct Leaf {
+    primitive: Primitive,
+    chain: Vec<DAffine3>,
+    frame: Frame,
+    extent: f64,
+}
+
+#[derive(Debug)]
+enum Node {
+    Leaf(usize),
+    All(Vec<Node>),
+    Any(Vec<Node>),
+    Not(Box<Node>),
+}
+
+/// An object in the order in which regions are decided.
+#[derive(Debug)]
+struct Owner {
+    object: u32,
+    root: Node,
+    priority: i32,
+    size: f64,
+}
+
+/// The region of a point.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Place {
+    /// In this object, or in none.
+    In(Option<u32>),
+    /// So near to a boundary that rounding, or the surface table's tolerance, may decide.
+    Near,
+}
+
+/// See the module.
+#[derive(Debug)]
+pub(crate) struct Oracle {
+    leaves: Vec<Leaf>,
+    owners: Vec<Owner>,
+    /// A ball around all that is bounded in the primitives.
+    center: DVec3,
+    radius: f64,
+    /// The coordinates in which the tolerance is stated.
+    scene: SceneFrame,
+    /// How far the surface table may have moved boundaries, in units of the scene's size.
+    tolerance: f64,
+}
+
+/// Two merged planes may differ by the tolerance in their distance from the origin and in each
+/// component of their normals: four times that at a corner of the scene. Other surfaces get twice
+/// as much.
+const MERGED: f64 = 8.0;
+
+impl Oracle {
+    /// For the solids of a scene. `merged`: whether the surface table has made any surfaces one.
+    pub(crate) fn new(scene: &Scene, merged: bool) -> Self {
+        let mut leaves = Vec::new();
+        let mut owners = Vec::new();
+        for (index, object) in scene.objects().iter().enumerate() {
+            let Shape::Solid(solid) = &object.shape else {
+                panic!("only solids have an inside");
+            };
+            let bounds = object.shape.bounds();
+            owners.push(Owner {
+                object: index as u32,
+                root: plant(solid, &mut Vec::new(), &mut leaves),
+                priority: object.priority,
+                size: if bounds.is_bounded() {
+                    bounds.diagonal()
+                } else {
+                    f64::INFINITY
+                },
+            });
+        }
+        // Higher priority, then smaller, then later.
+        owners.sort_by(|a, b| {
+            (b.priority.cmp(&a.priority))
+                .then(a.size.total_cmp(&b.size))
+                .then(b.object.cmp(&a.object))
+        });
+        let around = |leaf: &Leaf| {
+            let origin = leaf.frame.world_from_local.translation;
+            let size = DVec3::splat(leaf.frame.stretch * leaf.extent);
+            Aabb::new(origin - size, origin + size)
+        };
+        let all = leaves.iter().map(around).fold(Aabb::EMPTY, Aabb::union);
+        let (center, radius) = if all.is_empty() {
+            (DVec3::ZERO, 1.0)
+        } else {
+            (all.center(), all.diagonal())
+        };
+        let frame = SceneFrame::new(&scene.bounds());
+        Self {
+            leaves,
+            owners,
+            center,
+            radius: radius.max(f64::MIN_POSITIVE),
+            tolerance: if merged {
+                let place = PLACE_TOLERANCE * (frame.largest() / frame.size);
+                MERGED * (SURFACE_TOLERANCE + place)
+            } else {
+                0.0
+            },
+            scene: frame,
+        }
+    }
+
+    /// The unit of the surface table's tolerance.
+    pub(crate) fn scene_size(&self) -> f64 {
+        self.scene.size
+    }
+
+    /// The primitives, each with where it is, rounded.
+    pub(crate) fn primitives(&self) -> impl Iterator<Item = (&Primitive, DAffine3)> {
+        let leaves = self.leaves.iter();
+        leaves.map(|leaf| (&leaf.primitive, leaf.frame.world_from_local))
+    }
+
+    pub(crate) fn center(&self) -> DVec3 {
+        self.center
+    }
+
+    pub(crate) fn radius(&self) -> f64 {
+        self.radius
+    }
+
+    /// Whether each object holds a point, by rank.
+    fn answers(&self, answers: &mut Vec<Answer>, is_inside: &mut impl FnMut(usize) -> Answer) {
+        answers.clear();
+        answers.extend(self.owners.iter().map(|o| evaluate(&o.root, is_inside)));
+    }
+
+    /// The objects by rank.
+    pub(crate) fn objects(&self) -> impl Iterator<Item = u32> {
+        self.owners.iter().map(|owner| owner.object)
+    }
+
+    /// The region of a point, given which objects hold it.
+    ///
+    /// Which of two objects is the smaller one is not known where rounding decides it.
+    pub(crate) fn place(&self, answers: &[Answer]) -> Place {
+        let holding = |(_, answer): &(&Owner, &Answer)| **answer != Some(false);
+        let mut holding = self.owners.iter().zip(answers).filter(holding);
+        let Some((first, answer)) = holding.next() else {
+            return Place::In(None);
+        };
+        let alike = |other: &Owner| {
+            let apart = (other.size - first.size).abs();
+            other.priority == first.priority && apart <= 1e-9 * first.size
+        };
+        let rivals = holding.any(|(other, _)| first.size.is_finite() && alike(other));
+        match answer {
+            Some(true) if !rivals => Place::In(Some(first.object)),
+            _ => Place::Near,
+        }
+    }
+
+    /// Whether each object holds a point, by rank, without any rounding or margin; not known means
+    /// on a boundary.
+    pub(crate) fn exact_answers(&self, ray: &Ray, t: f64) -> Vec<Answer> {
+        let point = exact::point_at(ray, t);
+        let mut answers = Vec::new();
+        self.answers(&mut answers, &mut |index| {
+            let leaf = &self.leaves[index];
+            let frame = ExactFrame::product(&leaf.chain);
+            match exact::side(&leaf.primitive, &frame, &point) {
+                Ordering::Less => Some(true),
+                Ordering::Equal => None,
+                Ordering::Greater => Some(false),
+            }
+        });
+        answers
+    }
+}
+
+/// Puts a solid's primitives among the leaves, each with the transforms above it.
+fn plant(solid: &Solid, chain: &mut Vec<DAffine3>, leaves: &mut Vec<Leaf>) -> Node {
+    let mut each = |solids: &[Solid]| -> Vec<Node> {
+        let all = solids.iter();
+        all.map(|s| plant(s, chain, leaves)).collect()
+    };
+    match solid.node() {
+        SolidNode::Empty => Node::Any(Vec::new()),
+        SolidNode::Primitive(primitive) => {
+            leaves.push(Leaf {
+                primitive: primitive.clone(),
+                chain: chain.clone(),
+                frame: Frame::new(chain),
+                extent: extent(primitive),
+            });
+            Node::Leaf(leaves.len() - 1)
+        }
+        SolidNode::Transformed {
+            child,
+            parent_from_child,
+        } => {
+            chain.push(*parent_from_child);
+            let node = plant(child, chain, leaves);
+            chain.pop();
+            node
+        }
+        SolidNode::WithMaterial { child, .. } => plant(child, chain, leaves),
+        SolidNode::Complement(child) => Node::Not(Box::new(plant(child, chain, leaves))),
+        SolidNode::Union(all) => Node::Any(each(all)),
+        SolidNode::Intersection(all) => Node::All(each(all)),
+        SolidNode::Difference(all) => {
+            let mut nodes = each(all).into_iter();
+            let first = nodes.next().expect("a difference has operands");
+            let rest = nodes.map(|n| Node::Not(Box::new(n)));
+            Node::All(std::iter::once(first).chain(rest).collect())
+        }
+    }
+}
+
+/// Three-valued: one operand that decides is enough.
+fn evaluate(node: &Node, is_inside: &mut impl FnMut(usize) -> Answer) -> Answer {
+    let mut first_that = |nodes: &[Node], decides: bool| {
+        let mut result = Some(!decides);
+        for node in nodes {
+            match evaluate(node, is_inside) {
+                Some(value) if value == decides => return Some(decides),
+                Some(_) => {}
+                None => result = None,
+            }
+        }
+        result
+    };
+    match node {
+        Node::Leaf(index) => is_inside(*index),
+        Node::Not(node) => evaluate(node, is_inside).map(|value| !value),
+        Node::All(nodes) => first_that(nodes, false),
+        Node::Any(nodes) => first_that(nodes, true),
+    }
+}

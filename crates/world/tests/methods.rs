@@ -1,0 +1,184 @@
+//! One suite for every method: each answers every query as brute force does, to the bit.
+
+mod random;
+
+use std::sync::Arc;
+
+use octray_geometry::Solid;
+use octray_math::{DVec3, Ray};
+use octray_scene::{Material, Object, Scene, SceneBuilder};
+use octray_world::{
+    Accel, Chord, Counters, Criteria, Hit, Overlaps, RayQuery, Region, World, WorldConfig,
+};
+use proptest::prelude::*;
+use random::{model, point};
+
+fn scene(solids: &[(Solid, i32)]) -> Arc<Scene> {
+    let mut builder = SceneBuilder::new();
+    let material = builder.add_material(Material::default());
+    for (solid, priority) in solids {
+        builder.add_object(Object {
+            priority: *priority,
+            ..Object::solid("part", solid.clone(), material)
+        });
+    }
+    Arc::new(builder.build().expect("valid"))
+}
+
+fn world(scene: &Arc<Scene>, accel: Accel) -> World {
+    let config = WorldConfig {
+        accel,
+        criteria: Criteria {
+            max_depth: 7,
+            visit_cost: 0.1,
+            ..Criteria::default()
+        },
+        ..WorldConfig::default()
+    };
+    World::prepare(Arc::clone(scene), &config).expect("no meshes")
+}
+
+/// Every method, and grids of other sizes.
+fn methods() -> Vec<Accel> {
+    let grids = ["grid:1", "grid:3", "grid:40"].map(|name| name.parse().expect("a grid"));
+    Accel::all().into_iter().chain(grids).collect()
+}
+
+/// All answers of a world.
+#[derive(Debug, PartialEq)]
+struct Answers {
+    closest: Vec<Hit>,
+    occluded: Vec<bool>,
+    crossings: Vec<Vec<Hit>>,
+    chords: Vec<Vec<Chord>>,
+    regions: Vec<Region>,
+}
+
+fn answers(world: &World, rays: &[Ray]) -> Answers {
+    let mut counters = Counters::default();
+    let queries: Vec<RayQuery> = rays.iter().map(|ray| RayQuery::new(*ray)).collect();
+    let (mut closest, mut occluded) = (Vec::new(), Vec::new());
+    world.closest(&queries, &mut closest, &mut counters);
+    // Secondary rays, from the surfaces that were found.
+    let departing: Vec<RayQuery> = queries
+        .iter()
+        .zip(&closest)
+        .filter(|(_, hit)| !hit.is_miss())
+        .map(|(query, hit)| {
+            let surface = world.interact(query, hit);
+            RayQuery {
+                ray: Ray::new(surface.position, surface.normal),
+                departure: hit.departure(true),
+                ..*query
+            }
+        })
+        .collect();
+    world.occluded(&departing, &mut occluded, &mut counters);
+    let mut next = Vec::new();
+    world.closest(&departing, &mut next, &mut counters);
+    closest.extend(next);
+    let lists = |query: &RayQuery| {
+        let (mut hits, mut chords) = (Vec::new(), Vec::new());
+        world.crossings(query, true, &mut hits, &mut Counters::default());
+        world.chords(
+            query,
+            true,
+            Overlaps::Objects,
+            &mut chords,
+            &mut Counters::default(),
+        );
+        (hits, chords)
+    };
+    let (crossings, chords) = queries.iter().map(lists).unzip();
+    let points: Vec<DVec3> = rays.iter().map(|ray| ray.origin).collect();
+    let mut regions = Vec::new();
+    world.regions(&points, &mut regions, &mut counters);
+    Answers {
+        closest,
+        occluded,
+        crossings,
+        chords,
+        regions,
+    }
+}
+
+/// The answers that all methods agree on.
+fn conform(solids: &[(Solid, i32)], rays: &[Ray]) -> Answers {
+    let scene = scene(solids);
+    let expected = answers(&world(&scene, Accel::Brute), rays);
+    for method in methods() {
+        assert_eq!(answers(&world(&scene, method), rays), expected, "{method}");
+    }
+    expected
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(25))]
+
+    #[test]
+    fn every_method_answers_as_brute_force_does(
+        models in proptest::collection::vec((model(), 0..2i32), 1..6),
+        rays in proptest::collection::vec((point(4.0), point(1.0)), 30),
+    ) {
+        let solids: Vec<(Solid, i32)> = models.iter().map(|(m, p)| (m.solid.clone(), *p)).collect();
+        let rays: Vec<Ray> = rays.into_iter().map(|(o, d)| Ray::new(o, d)).collect();
+        let answers = conform(&solids, &rays);
+        // And brute force itself knows who is where.
+        for (ray, region) in rays.iter().zip(answers.regions) {
+            let holds: Vec<_> = models.iter().map(|(m, _)| m.recipe.contains(ray.origin)).collect();
+            if holds.iter().all(|(_, margin)| *margin > 1e-6) {
+                let found = region.object().map(|object| holds[object.0 as usize].0);
+                prop_assert_eq!(found.unwrap_or(true), found.is_some() || !holds.iter().any(|h| h.0));
+            }
+        }
+    }
+}
+
+fn rays_about(center: DVec3, size: f64) -> Vec<Ray> {
+    let mut rays = Vec::new();
+    for i in -3..=3_i32 {
+        for j in -3..=3_i32 {
+            let aside = DVec3::new(f64::from(i) * 0.3, f64::from(j) * 0.3, 0.0) * size;
+            let from = center + DVec3::new(0.0, 0.0, -5.0 * size);
+            rays.push(Ray::new(from + aside, DVec3::Z));
+            rays.push(Ray::new(from, DVec3::Z * 5.0 * size + aside));
+            rays.push(Ray::new(center + aside, DVec3::new(1.0, 0.1, -0.2)));
+        }
+    }
+    rays
+}
+
+#[test]
+fn odd_scenes_end_with_the_right_answers() {
+    let ball = |radius: f64, at: DVec3| {
+        let ball = Solid::sphere(radius).expect("valid");
+        (ball.translate(at).expect("finite"), 0)
+    };
+    // Nothing; one object; all at one point; huge coordinates; flat; a needle; only unbounded.
+    conform(&[], &rays_about(DVec3::ZERO, 1.0));
+    conform(&[ball(1.0, DVec3::ONE)], &rays_about(DVec3::ONE, 1.0));
+    let stacked: Vec<_> = (1..20)
+        .map(|i| ball(f64::from(i) * 0.05, DVec3::ONE))
+        .collect();
+    conform(&stacked, &rays_about(DVec3::ONE, 1.0));
+    let far = DVec3::new(1e30, -1e30, 3e29);
+    conform(
+        &[ball(1e29, far), ball(2e29, far * 0.9)],
+        &rays_about(far, 1e29),
+    );
+    let slab = |size: DVec3| (Solid::cuboid(-size, size).expect("valid"), 0);
+    conform(
+        &[slab(DVec3::new(1.0, 1.0, 1e-9))],
+        &rays_about(DVec3::ZERO, 1.0),
+    );
+    conform(
+        &[slab(DVec3::new(1e6, 0.5, 0.5)), ball(1.0, DVec3::X)],
+        &rays_about(DVec3::ZERO, 1.0),
+    );
+    let floor = (Solid::half_space(DVec3::Z, -0.5).expect("valid"), 0);
+    conform(std::slice::from_ref(&floor), &rays_about(DVec3::ZERO, 1.0));
+    conform(
+        &[floor, ball(1.0, DVec3::ZERO)],
+        &rays_about(DVec3::ZERO, 1.0),
+    );
+}
