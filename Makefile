@@ -11,7 +11,7 @@ export PIP_DISABLE_PIP_VERSION_CHECK := 1
 BIN := .venv/bin
 RUST_SOURCES := $(shell find crates -name '*.rs' -o -name Cargo.toml) Cargo.toml Cargo.lock
 
-.PHONY: help demo test test-rust test-python lint setup clean toolchain
+.PHONY: help demo test test-rust test-python lint setup peers peers-speed clean toolchain
 .DELETE_ON_ERROR:
 
 help: ## Print this list
@@ -39,8 +39,14 @@ lint: .venv/tools ## Check formatting, lints and types of both languages
 
 setup: .venv/tools ## Install octray and the tools of its developers into .venv
 
+peers: .venv-peers/installed ## Run the same scenes through octray and the peers that are installed
+	@$(PEERS_PYTHON) benches/peers/compare.py
+
+peers-speed: .venv-peers/installed ## Count the rays per second of octray and raysect
+	@$(PEERS_PYTHON) benches/peers/raysect_rays.py
+
 clean: ## Remove everything that was made here
-	rm -rf .venv $(OUT) target python/octray/*.so
+	rm -rf .venv .venv-peers $(OUT) target python/octray/*.so
 
 toolchain:
 	@PYTHON='$(PYTHON)' tools/check-toolchain
@@ -63,4 +69,17 @@ DEVELOP := VIRTUAL_ENV='$(CURDIR)/.venv' $(BIN)/maturin develop --release
 
 .venv/tools: .venv/installed pyproject.toml
 	$(DEVELOP) --extras dev
+	@touch $@
+
+# Peers have an environment of their own; one that cannot be installed here is left out and said so.
+# POV-Ray and OpenSCAD come from the system's packages.
+PEERS ?= raysect trimesh embreex manifold3d open3d
+PEERS_PYTHON := PYTHONPATH=python .venv-peers/bin/python
+
+.venv-peers/installed: .venv/installed
+	$(PYTHON) -m venv .venv-peers
+	.venv-peers/bin/pip install --quiet 'click>=8.1' 'numpy>=1.24' pillow
+	@for peer in $(PEERS); do \
+	  .venv-peers/bin/pip install --quiet $$peer || echo "$$peer cannot be installed here"; \
+	done
 	@touch $@

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -30,6 +31,11 @@ f 2 3 7 6
 f 3 4 8 7
 f 4 1 5 8
 """
+
+
+def blocks(page: str, language: str) -> list[str]:
+    """Take the fenced examples in one language out of a page of Markdown."""
+    return re.findall(rf"^```{language}\n(.*?)^```", page, re.MULTILINE | re.DOTALL)
 
 
 class Octray(Protocol):

@@ -323,6 +323,34 @@ def test_info_lists_the_scene(octray_command: Octray, cube: Path) -> None:
     ]
 
 
+def test_info_says_which_surfaces_coincide_and_which_nearly_do(
+    octray_command: Octray, tmp_path: Path
+) -> None:
+    path = tmp_path / "stack.pov"
+
+    def stack(gap: float) -> None:
+        upper = f"cylinder {{ <2, {4 + gap:.17g}, 2>, <2, 10, 2>, 1 }}"
+        path.write_text(f"box {{ 0, 4 }}\n{upper}\n", encoding="utf-8")
+
+    stack(0)
+    lines = octray_command("info", path.name).stdout.splitlines()
+    assert "surfaces 8, faces merged with them 1" in lines
+
+    stack(1e-7)
+    lines = octray_command("info", path.name).stdout.splitlines()
+    at = lines.index("surfaces 9, faces merged with them 0")
+    assert lines[at + 1].startswith("  1 nearly coincides with another: nearer than 9.54e-06,")
+    assert "1e-07 apart, at (2, 4, 2)" in lines[at + 2]
+    assert lines[at + 2].startswith("  planes of `")
+    described = json.loads(octray_command("info", path.name, "--json").stdout)["surfaces"]
+    assert described["near_count"] == 1
+    [pair] = described["pairs"]
+    assert pair["kind"] == "plane"
+    assert pair["objects"] == [0, 1]
+    assert abs(pair["gap"] - 1e-7) < 1e-14
+    assert pair["position"] == [2.0, 4.0, 2.0]
+
+
 def test_info_says_what_is_wrong_with_a_mesh(
     octray_command: Octray, cube: Path, tmp_path: Path
 ) -> None:

@@ -13,19 +13,16 @@ from pathlib import Path
 
 import pytest
 
-ROOT = Path(__file__).resolve().parent.parent
+from conftest import ROOT, blocks
+
 README = (ROOT / "README.md").read_text(encoding="utf-8")
-
-
-def blocks(language: str) -> list[str]:
-    return re.findall(rf"^```{language}\n(.*?)^```", README, re.MULTILINE | re.DOTALL)
 
 
 def test_the_python_examples_run_in_order(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
     names: dict[str, object] = {}
     printed = io.StringIO()
-    examples = blocks("python")
+    examples = blocks(README, "python")
     assert len(examples) == 3
     with contextlib.redirect_stdout(printed):
         for example in examples:
@@ -42,7 +39,7 @@ def test_the_python_examples_run_in_order(tmp_path: Path, monkeypatch: pytest.Mo
         assert line.strip("[]").split() == claim.strip("[]").split()
 
 
-COMMANDS = [line for block in blocks("sh") for line in block.splitlines() if line.strip()]
+COMMANDS = [line for block in blocks(README, "sh") for line in block.splitlines() if line.strip()]
 
 
 @pytest.mark.parametrize("command", COMMANDS)

@@ -2,6 +2,8 @@
 
 use octray_math::{Aabb, DAffine3, DVec3};
 
+use crate::{Primitive, Solid, SolidNode};
+
 /// A scene far from the origin is moved there before anything is computed, so that its coordinates
 /// keep their digits: a millionth of a scene's size is the same everywhere.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -65,9 +67,78 @@ impl SceneFrame {
     }
 }
 
+/// The box that decides on the frame of a scene: `bounded` holds its bounded objects, and each of
+/// `unbounded` adds its bounded primitives, because they are as large as its coordinates are. Where
+/// there is nothing bounded at all, the unbounded primitives add the points they are given by.
+pub fn finite_box<'a>(
+    bounded: Aabb,
+    unbounded: impl IntoIterator<Item = &'a Solid> + Clone,
+) -> Aabb {
+    let add = |anchors: bool| {
+        let mut all = bounded;
+        for solid in unbounded.clone() {
+            add_primitives(solid, &DAffine3::IDENTITY, anchors, &mut all);
+        }
+        all
+    };
+    let finite = add(false);
+    if finite.is_empty() { add(true) } else { finite }
+}
+
+fn add_primitives(solid: &Solid, world: &DAffine3, anchors: bool, all: &mut Aabb) {
+    let each = |solids: &[Solid], all: &mut Aabb| {
+        for solid in solids {
+            add_primitives(solid, world, anchors, all);
+        }
+    };
+    match solid.node() {
+        SolidNode::Empty => {}
+        SolidNode::Primitive(primitive) => {
+            let bounds = match primitive {
+                Primitive::HalfSpace { normal, offset } if anchors => {
+                    Aabb::from_points([*normal * *offset])
+                }
+                Primitive::Cylinder { radius, z } if anchors => {
+                    let end = z.iter().find(|z| z.is_finite()).copied().unwrap_or(0.0);
+                    let corner = DVec3::new(*radius, *radius, 0.0);
+                    let center = DVec3::new(0.0, 0.0, end);
+                    Aabb::new(center - corner, center + corner)
+                }
+                other => other.bounds(),
+            };
+            if bounds.is_bounded() {
+                *all = all.union(bounds.transformed(world));
+            }
+        }
+        SolidNode::Transformed {
+            child,
+            parent_from_child,
+        } => add_primitives(child, &(*world * *parent_from_child), anchors, all),
+        SolidNode::WithMaterial { child, .. } | SolidNode::Complement(child) => {
+            each(std::slice::from_ref(child), all);
+        }
+        SolidNode::Union(solids)
+        | SolidNode::Intersection(solids)
+        | SolidNode::Difference(solids) => each(solids, all),
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn unbounded_objects_are_as_large_as_what_they_are_made_of() {
+        let floor = Solid::half_space(DVec3::Z, -1e9).expect("valid");
+        let ball = Solid::sphere(3e8).expect("valid");
+        let far = ball.translate(DVec3::X * 1e9).expect("finite");
+        let hollow = Solid::difference([floor.clone(), far]);
+        let unit = Aabb::new(-DVec3::ONE, DVec3::ONE);
+        assert_eq!(finite_box(unit, [&floor]), unit);
+        assert_eq!(finite_box(unit, [&hollow]).max.x, 1.3e9);
+        let only = finite_box(Aabb::EMPTY, [&floor]);
+        assert_eq!(only, Aabb::from_points([DVec3::Z * -1e9]));
+    }
 
     #[test]
     fn a_scene_around_the_origin_stays_there() {

@@ -10,6 +10,8 @@ mod frame;
 mod identity;
 mod implicit;
 pub mod mesh;
+pub mod polygon;
+mod polyhedron;
 mod polynomial;
 mod primitive;
 pub mod profile;
@@ -18,7 +20,7 @@ mod solid;
 pub mod surface;
 
 pub use composite::{Composite, CompositeFace, CompositeKind};
-pub use frame::SceneFrame;
+pub use frame::{SceneFrame, finite_box};
 pub use identity::{FaceId, MaterialId, SurfaceId};
 pub use mesh::{CornerAttribute, MeshError, MeshRule, TriangleMesh};
 pub use polynomial::Polynomial;

@@ -6,8 +6,9 @@ use octray_math::{Aabb, DAffine3, DVec3, transform};
 
 use crate::MaterialId;
 use crate::mesh::{MeshRule, TriangleMesh};
+use crate::polyhedron;
 use crate::primitive::{ConvexPolyhedron, Primitive, ShapeError};
-use crate::profile::{self, Region};
+use crate::profile::{self, Region, Turning};
 
 /// An immutable CSG tree, shared on clone.
 ///
@@ -137,6 +138,8 @@ impl Drop for Measured {
     }
 }
 
+/// Up to this product of faces and corners it is tried whether a polyhedron is convex.
+const CONVEX_TESTS: usize = 50_000_000;
 /// The deepest tree of solids that is worked on.
 pub const MAX_NESTING: u32 = 1000;
 /// The most operands a solid may have, shared subtrees counted at every use.
@@ -306,6 +309,43 @@ impl Solid {
         Self::primitive(Primitive::Convex(polyhedron))
     }
 
+    /// A closed polyhedron, which need not be convex: corners, and faces as corner indices,
+    /// counter-clockwise seen from outside. All faces the wrong way round are turned.
+    ///
+    /// Of a few hundred planar faces every plane is exact; others become triangles.
+    ///
+    /// # Errors
+    /// An index is out of range, a coordinate is not finite, or the faces do not enclose a volume:
+    /// each edge must be shared by two faces, in opposite directions.
+    pub fn polyhedron(vertices: Vec<DVec3>, faces: &[Vec<u32>]) -> Result<Self, ShapeError> {
+        let mesh = Arc::new(polyhedron::triangulated(vertices.clone(), faces)?);
+        mesh.check_closed()?;
+        if mesh.is_inside_out() {
+            let turned = |face: &Vec<u32>| face.iter().rev().copied().collect();
+            let faces: Vec<Vec<u32>> = faces.iter().map(turned).collect();
+            return Self::exact_polyhedron(&vertices, &faces)
+                .or_else(|_| Ok(Self::primitive(Primitive::Mesh(Arc::new(mesh.reversed())))));
+        }
+        Self::exact_polyhedron(&vertices, faces)
+            .or_else(|_| Ok(Self::primitive(Primitive::Mesh(mesh))))
+    }
+
+    /// Like [`Solid::polyhedron`], with the exact plane of every face: for faces that are known to
+    /// be closed and counter-clockwise seen from outside.
+    ///
+    /// # Errors
+    /// The faces are not planar, or so many or so intricate that a mesh is the better
+    /// representation.
+    pub fn exact_polyhedron(vertices: &[DVec3], faces: &[Vec<u32>]) -> Result<Self, ShapeError> {
+        if faces.len().saturating_mul(vertices.len()) <= CONVEX_TESTS
+            && let Ok(convex) = ConvexPolyhedron::from_faces(vertices.to_vec(), faces)
+        {
+            return Ok(Self::convex(Arc::new(convex)));
+        }
+        let concave = polyhedron::polyhedron(vertices, faces)?;
+        Ok(Self::primitive(Primitive::Composite(Arc::new(concave))))
+    }
+
     /// A region of the xy plane drawn out along z, from `z0` to `z1`.
     ///
     /// # Errors
@@ -345,7 +385,17 @@ impl Solid {
     /// # Errors
     /// A part of the region lies at negative x.
     pub fn lathe(region: &Region) -> Result<Self, ShapeError> {
-        let lathe = profile::lathe(region)?;
+        Self::turned_lathe(region, Turning::ROUND)
+    }
+
+    /// Like [`Solid::lathe`], but not all the way round, or in straight steps.
+    ///
+    /// # Errors
+    /// Like [`Solid::lathe`]; the turn is not finite, not positive or more than 360 degrees; a step
+    /// is 180 degrees or more, or the region has curves or edges that cross and is to turn in
+    /// steps.
+    pub fn turned_lathe(region: &Region, turning: Turning) -> Result<Self, ShapeError> {
+        let lathe = profile::lathe(region, turning)?;
         Ok(Self::primitive(Primitive::Composite(Arc::new(lathe))))
     }
 

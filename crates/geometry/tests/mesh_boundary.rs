@@ -429,4 +429,14 @@ fn a_large_mesh_is_checked_fast_enough_and_a_hopeless_one_is_given_up() {
     });
     let fan = TriangleMesh::new(positions, triangles.collect()).unwrap();
     assert_eq!(counts(&fan), [(FlawKind::Unchecked, 1)]);
+    // Triangles and their reverses through each other everywhere.
+    let mut random = Random::new(8);
+    let n = 3000_u32;
+    let positions = (0..3 * n).map(|_| random.point(1.0)).collect();
+    let pair = |i: u32| [[3 * i, 3 * i + 1, 3 * i + 2], [3 * i, 3 * i + 2, 3 * i + 1]];
+    let tangle = TriangleMesh::new(positions, (0..n).flat_map(pair).collect()).unwrap();
+    let report = tangle.check();
+    assert!(report.is_closed() && !report.is_unambiguous());
+    assert!(report.count(FlawKind::Crossing) > 10_000);
+    assert_eq!(report.count(FlawKind::Unchecked), 1);
 }

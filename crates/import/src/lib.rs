@@ -15,7 +15,7 @@ pub mod nff;
 pub mod obj;
 pub mod openscad;
 pub mod ply;
-pub mod polygon;
+pub use octray_geometry::polygon;
 pub mod pov;
 pub mod stl;
 mod text;

@@ -1,10 +1,13 @@
-//! What is wrong with the meshes of a scene, as plain dictionaries and lists.
+//! What is wrong with the meshes of a scene and doubtful about its surfaces, as plain dictionaries
+//! and lists.
 
 use std::sync::Arc;
 
 use octray::geometry::mesh::Flaw;
 use octray::geometry::{Primitive, Sheet, Solid, SolidNode, TriangleMesh};
 use octray::scene::{Object, Scene, Shape};
+use octray::world::{NearCoincidence, SurfaceReport};
+use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
 
@@ -71,4 +74,33 @@ pub(crate) fn meshes<'py>(py: Python<'py>, scene: &Scene) -> PyResult<Bound<'py,
         }
     }
     Ok(list)
+}
+
+/// So many near coincidences are listed.
+const LISTED: usize = 16;
+
+fn near<'py>(py: Python<'py>, pair: &NearCoincidence) -> PyResult<Bound<'py, PyDict>> {
+    let dict = PyDict::new(py);
+    dict.set_item("kind", if pair.planes { "plane" } else { "curved" })?;
+    dict.set_item("objects", pair.objects.map(|id| id.0))?;
+    dict.set_item("gap", pair.gap)?;
+    dict.set_item("position", pair.position.to_array())?;
+    Ok(dict)
+}
+
+/// What the surface table makes of the scene.
+pub(crate) fn surfaces<'py>(py: Python<'py>, scene: &Scene) -> PyResult<Bound<'py, PyDict>> {
+    let report = py
+        .detach(|| SurfaceReport::new(scene))
+        .map_err(|error| PyValueError::new_err(error.to_string()))?;
+    let dict = PyDict::new(py);
+    dict.set_item("surfaces", report.surfaces)?;
+    dict.set_item("merged", report.merged)?;
+    dict.set_item("tolerance", report.tolerance)?;
+    dict.set_item("near", report.near)?;
+    dict.set_item("near_count", report.pairs.len())?;
+    let pairs = report.pairs.iter().take(LISTED);
+    let pairs: Vec<_> = pairs.map(|p| near(py, p)).collect::<PyResult<_>>()?;
+    dict.set_item("pairs", pairs)?;
+    Ok(dict)
 }

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use octray::geometry::{Primitive, Sheet, Solid, SolidNode};
+use octray::geometry::{CompositeKind, Primitive, Sheet, Solid, SolidNode};
 use octray::math::{Aabb, DVec3};
 use octray::scene::{
     Background, Camera, Encoding, Light, LightKind, Material, Object, Pattern, Pigment, Projection,
@@ -12,7 +12,7 @@ use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
 
 /// What one calls this primitive.
-pub(crate) const fn primitive_name(primitive: &Primitive) -> &'static str {
+pub(crate) fn primitive_name(primitive: &Primitive) -> &'static str {
     match primitive {
         Primitive::Sphere { .. } => "sphere",
         Primitive::Box { .. } => "box",
@@ -24,6 +24,11 @@ pub(crate) const fn primitive_name(primitive: &Primitive) -> &'static str {
         Primitive::Superellipsoid { .. } => "superellipsoid",
         Primitive::HalfSpace { .. } => "half_space",
         Primitive::Convex(_) => "polyhedron",
+        Primitive::Composite(composite) => match composite.kind() {
+            CompositeKind::Prism => "prism",
+            CompositeKind::Lathe => "lathe",
+            CompositeKind::Polyhedron => "polyhedron",
+        },
         Primitive::Mesh(_) => "mesh",
     }
 }

@@ -453,6 +453,14 @@ impl Scene {
         crate::check::meshes(py, self.builder.so_far())
     }
 
+    /// What is known of the surfaces of solids: how many distinct `surfaces` there are, how many
+    /// faces were `merged` with one that was there because they coincide within the `tolerance`, and
+    /// how many surfaces are farther from an earlier one than that, yet nearer than `near`
+    /// (`near_count`; the first of them are `pairs`). Lengths are in the scene's unit.
+    fn check_surfaces<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        crate::check::surfaces(py, self.builder.so_far())
+    }
+
     fn __len__(&self) -> usize {
         self.builder.so_far().objects().len()
     }

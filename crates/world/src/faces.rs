@@ -11,7 +11,8 @@ impl World {
     pub fn face_count(&self, object: ObjectId) -> u32 {
         let sheet = self.sheets.faces_of(object);
         let [triangles, others] = self.solids.faces_of(object);
-        (sheet.len() + triangles.len() + others.len()) as u32
+        let stand_in = self.solids.mesh_literals(&others);
+        sheet.len() as u32 + triangles.len() as u32 + others.len() as u32 - stand_in
     }
 
     /// A face's object, and its number among that object's faces, from 0: triangles of meshes in
@@ -28,7 +29,9 @@ impl World {
         let number = if triangles.contains(&face.0) {
             face.0 - triangles.start
         } else {
-            triangles.len() as u32 + face.0.checked_sub(others.start)?
+            // A mesh has a face of its own in the expression, which no ray ever meets.
+            let before = others.start..face.0;
+            triangles.len() as u32 + before.len() as u32 - self.solids.mesh_literals(&before)
         };
         Some((object, number))
     }

@@ -13,12 +13,14 @@ mod line;
 mod query;
 mod sheets;
 mod solids;
+mod surfaces;
 mod world;
 
 pub use accel::{Accel, AccelError};
 pub use batch::{Batch, BatchError, Lists, RayRow, row_query};
 pub use chords::{Chord, ChordEnd, Overlaps};
 pub use query::{Counters, Departure, Hit, RayQuery, Region, SurfaceHit};
+pub use surfaces::{NearCoincidence, SurfaceReport};
 pub use world::{World, WorldConfig, WorldError, WorldStats};
 
 pub use octray_tree::{

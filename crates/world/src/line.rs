@@ -1,7 +1,8 @@
 //! Rays as the structures see them: moved and scaled so that rounding stays small.
 
-use octray_geometry::SceneFrame;
-use octray_math::{Aabb, DVec3, Ray};
+use octray_geometry::{SceneFrame, Sheet, finite_box};
+use octray_math::{DVec3, Ray};
+use octray_scene::{Scene, Shape};
 
 use crate::{Departure, RayQuery};
 
@@ -16,9 +17,20 @@ pub(crate) struct Place {
 }
 
 impl Place {
-    /// Of the bounded objects in this box, which may be empty.
-    pub(crate) fn new(bounds: &Aabb) -> Self {
-        let frame = SceneFrame::new(bounds);
+    /// Of a scene.
+    pub(crate) fn new(scene: &Scene) -> Self {
+        let solids = scene.objects().iter().flat_map(|object| {
+            let solids = match &object.shape {
+                Shape::Solid(solid) => [Some(solid), None],
+                Shape::Sheet(Sheet::Shell { solid, clip }) => [Some(solid), Some(clip)],
+                Shape::Sheet(Sheet::Mesh { .. }) => [None, None],
+            };
+            let bounds = object.shape.bounds();
+            let unbounded = !bounds.is_empty() && !bounds.is_bounded();
+            solids.into_iter().flatten().filter(move |_| unbounded)
+        });
+        let bounds = finite_box(scene.bounds(), solids);
+        let frame = SceneFrame::new(&bounds);
         let center = if bounds.is_empty() || !bounds.is_bounded() {
             DVec3::ZERO
         } else {
@@ -27,14 +39,27 @@ impl Place {
         Self { frame, center }
     }
 
+    /// `shift` to within a 512th of the scene's size, as a short number: a line whose coordinates
+    /// are short numbers then has an exact origin, and crosses the planes that meet in an edge at
+    /// one parameter if it goes through the edge.
+    fn short(&self, shift: f64) -> f64 {
+        let step = libm::ldexp(1.0, libm::ilogb(self.frame.size) - 8);
+        let steps = libm::rint(shift / step);
+        if steps.is_finite() {
+            steps * step
+        } else {
+            shift
+        }
+    }
+
     /// A point of the world in the scene's coordinates.
     pub(crate) fn scene_from_world(&self, point: DVec3) -> DVec3 {
         point - self.frame.origin
     }
 }
 
-/// A ray in the coordinates of the scene whose origin lies at its closest approach to the scene's centre and whose direction's
-/// largest component lies in `[1, 2)`.
+/// A ray in the coordinates of the scene whose origin lies about at its closest approach to the
+/// scene's centre and whose direction's largest component lies in `[1, 2)`.
 ///
 /// Everything is tested against `ray` and compared by its parameter `s`; the user's parameter is
 /// `t = (s - origin) / scale`. Far origins then cost no digits, and no length of direction
@@ -74,7 +99,7 @@ impl Line {
         // Powers of two: exact, except for directions so small that they have few digits anyway.
         let (direction, scale) = scaled(direction, largest);
         let unit = Ray::new(origin - place.frame.origin, direction);
-        let shift = unit.closest_approach(place.center);
+        let shift = place.short(unit.closest_approach(place.center));
         let ray = unit.shifted(shift);
         if !(ray.origin.is_finite() && scale > 0.0) {
             return None;

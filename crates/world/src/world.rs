@@ -97,14 +97,12 @@ impl World {
     /// # Errors
     /// See [`WorldError`].
     pub fn prepare(scene: Arc<Scene>, config: &WorldConfig) -> Result<Self, WorldError> {
-        if face_estimate(&scene) > 1 << 30 {
-            return Err(WorldError::TooManyFaces);
-        }
+        check_face_count(&scene)?;
         let triangles = match config.accel {
             Accel::Brute => None,
             _ => Some(&config.triangles),
         };
-        let place = Place::new(&scene.bounds());
+        let place = Place::new(&scene);
         let solids = Solids::prepare(&scene, &place.frame, config, triangles)
             .map_err(|(object, error)| WorldError::Mesh { object, error })?;
         let sheets = Sheets::prepare(&scene, &place.frame, solids.face_count(), triangles)?;
@@ -347,12 +345,16 @@ impl World {
     }
 }
 
-/// An upper bound of the number of faces.
-fn face_estimate(scene: &Scene) -> u64 {
-    scene.objects().iter().fold(0, |sum: u64, object| {
+/// Whether the faces have ids enough, by an upper bound of their number.
+pub(crate) fn check_face_count(scene: &Scene) -> Result<(), WorldError> {
+    let faces = scene.objects().iter().fold(0, |sum: u64, object| {
         sum.saturating_add(match &object.shape {
             Shape::Solid(solid) => solid.faces(),
             Shape::Sheet(sheet) => sheet.faces(),
         })
-    })
+    });
+    if faces > 1 << 30 {
+        return Err(WorldError::TooManyFaces);
+    }
+    Ok(())
 }

@@ -6,6 +6,7 @@
 //! OCTRAY_CASES=50 cargo test --release -p octray-world --test mesh_coincidence -- --nocapture
 //! ```
 #![allow(clippy::unwrap_used, reason = "tests may fail loudly")]
+#![allow(clippy::print_stdout, reason = "says how much was tried")]
 #![allow(unreachable_pub, reason = "modules shared by test programs")]
 
 #[path = "../../geometry/tests/meshes/mod.rs"]

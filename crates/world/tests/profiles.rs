@@ -468,3 +468,81 @@ fn pyramids_taper_to_a_point() {
     let expected = area * 3.0 * (1.0 + 0.5 + 0.25) / 3.0;
     assert!((volume(&tapered, 300) / expected - 1.0).abs() < 2e-3);
 }
+
+/// Corners and faces of a polygon drawn out: concave faces at its ends.
+fn drawn_out(corners: &[(f64, f64)], height: f64) -> (Vec<DVec3>, Vec<Vec<u32>>) {
+    let n = corners.len() as u32;
+    let place = |z: f64| corners.iter().map(move |&(x, y)| DVec3::new(x, y, z));
+    let mut faces = vec![(0..n).rev().collect(), (n..2 * n).collect()];
+    for i in 0..n {
+        let next = (i + 1) % n;
+        faces.push(vec![i, next, next + n, i + n]);
+    }
+    (place(0.0).chain(place(height)).collect(), faces)
+}
+
+/// A cube with a pit in its top: 8 + 8 corners, a face with a hole as two concave ones.
+fn pit() -> (Vec<DVec3>, Vec<Vec<u32>>) {
+    let ring = |size: f64, z: f64| {
+        [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)]
+            .map(|(x, y)| DVec3::new(x * size, y * size, z))
+    };
+    let vertices = [
+        ring(2.0, 0.0),
+        ring(2.0, 3.0),
+        ring(1.0, 3.0),
+        ring(0.5, 1.0),
+    ]
+    .concat();
+    let mut faces = vec![vec![3, 2, 1, 0], vec![12, 13, 14, 15]];
+    for i in 0..4_u32 {
+        let next = (i + 1) % 4;
+        faces.push(vec![i, next, next + 4, i + 4]);
+        faces.push(vec![i + 8, next + 8, next + 12, i + 12]);
+    }
+    // The rim, cut along two diagonals into two concave hexagons.
+    faces.push(vec![4, 5, 6, 10, 9, 8]);
+    faces.push(vec![6, 7, 4, 8, 11, 10]);
+    (vertices, faces)
+}
+
+#[test]
+fn concave_polyhedra_have_exact_planes() {
+    let corners = [
+        (0.0, 0.0),
+        (3.0, 0.0),
+        (3.0, 1.0),
+        (1.0, 1.0),
+        (1.0, 3.0),
+        (0.0, 3.0),
+    ];
+    let (vertices, faces) = drawn_out(&corners, 2.0);
+    let solid = Solid::exact_polyhedron(&vertices, &faces).expect("eight planes");
+    let prism = Solid::prism(&l_shape(), 0.0, 2.0).expect("valid");
+    assert_same("L", &solid, &prism, 1e-14);
+    // Inside out it is the same solid.
+    let turned: Vec<Vec<u32>> = faces
+        .iter()
+        .map(|f| f.iter().rev().copied().collect())
+        .collect();
+    let turned = Solid::polyhedron(vertices.clone(), &turned).expect("closed");
+    assert_same("turned L", &turned, &prism, 1e-14);
+    let open = Solid::polyhedron(vertices, &faces[1..]);
+    assert!(open.is_err(), "a face is missing");
+
+    let (vertices, faces) = pit();
+    let solid = Solid::exact_polyhedron(&vertices, &faces).expect("a dozen planes");
+    // A frustum of a pyramid is missing.
+    let expected = 48.0 - 2.0 * (4.0 + 2.0 + 1.0) / 3.0;
+    assert!((volume(&solid, 300) / expected - 1.0).abs() < 2e-3);
+    let cube = Solid::cuboid(DVec3::new(-2.0, -2.0, 0.0), DVec3::new(2.0, 2.0, 3.0));
+    let taper = polygon(&[(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)]);
+    let plug = Solid::tapered_prism(&taper, [1.0, 3.0], [0.5, 1.0]).expect("valid");
+    assert_same(
+        "filled",
+        &Solid::union([solid.clone(), plug]),
+        &cube.expect("valid"),
+        1e-14,
+    );
+    aim("pit", &solid, &vertices);
+}

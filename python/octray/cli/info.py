@@ -48,6 +48,26 @@ def _mesh_lines(check: dict[str, Any]) -> list[str]:
     return [f"       {closed} boundary of a solid: {flaws or 'no triangles'}", *places]
 
 
+def _near_line(pair: dict[str, Any], objects: list[dict[str, Any]]) -> str:
+    kind = {"plane": "planes", "curved": "curved surfaces"}[pair["kind"]]
+    names = " and ".join(f"`{objects[i]['name']}`" for i in dict.fromkeys(pair["objects"]))
+    return f"  {kind} of {names}, {pair['gap']:.3g} apart, at {_numbers(pair['position'])}"
+
+
+def _surface_lines(check: dict[str, Any], objects: list[dict[str, Any]]) -> list[str]:
+    lines = [f"surfaces {check['surfaces']}, faces merged with them {check['merged']}"]
+    count, pairs = check["near_count"], check["pairs"]
+    if count:
+        lines.append(
+            f"  {count} nearly {'coincide' if count > 1 else 'coincides'} with another: nearer than"
+            f" {check['near']:.3g}, and farther than {check['tolerance']:.3g}, so they are distinct"
+        )
+        lines.extend(_near_line(pair, objects) for pair in pairs)
+        if count > len(pairs):
+            lines.append(f"  and {count - len(pairs)} more")
+    return lines
+
+
 def _material_line(index: int, entry: dict[str, Any]) -> str:
     look = entry["pattern"] or f"color {_numbers(entry['color'])}"
     if entry["transparent"]:
@@ -79,6 +99,7 @@ def _text(path: str, scene: dict[str, Any]) -> str:
         for check in scene["meshes"]:
             if check["object"] == index:
                 lines.extend(_mesh_lines(check))
+    lines.extend(_surface_lines(scene["surfaces"], scene["objects"]))
     for title, line in (("materials", _material_line), ("lights", _light_line)):
         entries = scene[title]
         lines.append(f"{title} {len(entries)}")
@@ -93,12 +114,14 @@ def _text(path: str, scene: dict[str, Any]) -> str:
 def command(scene: str, facets: bool, strict: bool, as_json: bool, quiet: bool) -> None:
     """Print the objects, materials, lights and bounds of SCENE.
 
-    Of meshes it says whether they bound a solid, and if not, what is wrong where.
+    Of meshes it says whether they bound a solid, and if not, what is wrong where; of the
+    surfaces of solids how many coincide, and which nearly do and are distinct.
     With --strict a warning is an error (exit code 3): a check of the file.
     """
     loaded = load(scene, facets=facets, strict=strict, quiet=quiet)
     described = loaded.describe()
     described["meshes"] = loaded.check_meshes()
+    described["surfaces"] = loaded.check_surfaces()
     if as_json:
         described["file"] = scene
         described["warnings"] = [as_dict(diagnostic) for diagnostic in loaded.diagnostics]

@@ -1,121 +1,17 @@
 //! Finds the planes that triangles of mesh operands share with other operands.
-//!
-//! A triangle lies in a plane if all its corners are as close to it as surfaces must be to count as
-//! one. Candidates are found by the triangle's own plane, coarsely: its normal is inaccurate for a
-//! thin triangle, so cells are wide and only the corners decide. (A triangle thinner than about
-//! 2^-30 of the scene is not recognised.)
 
-use std::collections::HashMap;
-
-use octray_math::DVec3;
+use octray_math::{Aabb, DVec3};
 
 use super::lower::MeshOperand;
+use super::plane_index::{Facet, PlaneIndex};
 use crate::mesh::{FacetPlanes, Placement};
 use crate::surface::Surface;
 
-/// Width of a cell, of unit normals and of offsets in units of the scene's size.
-const NORMAL_CELL: f64 = 1.0 / 256.0;
-const OFFSET_CELL: f64 = 1.0 / 16384.0;
-/// Inaccuracy of a triangle's plane that is looked for: 2^-18, of normals and offsets alike.
-const INACCURACY: f64 = 1.0 / 262_144.0;
 /// A crossing may lie outside of its triangle by this much, in units of the scene's size.
 const SLACK: f64 = 1.0 / (1u64 << 26) as f64;
 
-/// Planes that can be found by others like them.
-struct PlaneIndex {
-    scale: f64,
-    tolerance: f64,
-    planes: Vec<(DVec3, f64)>,
-    cells: HashMap<[i32; 4], Vec<u32>>,
-}
-
-/// A triangle of a mesh.
-struct Facet {
-    corners: [DVec3; 3],
-    normal: DVec3,
-    offset: f64,
-    area: f64,
-}
-
-impl Facet {
-    /// `None` without area.
-    fn new(corners: [DVec3; 3]) -> Option<Self> {
-        let [a, b, c] = corners;
-        let (u, v) = (b - a, c - a);
-        let size = u.abs().max(v.abs()).max_element();
-        let cross = (u / size).cross(v / size);
-        let normal = cross.try_normalize()?;
-        Some(Self {
-            corners,
-            normal,
-            offset: normal.dot(a),
-            area: cross.length() * size * size,
-        })
-    }
-}
-
-impl PlaneIndex {
-    fn new(scene_size: f64, tolerance: f64) -> Self {
-        Self {
-            scale: 1.0 / scene_size,
-            tolerance,
-            planes: Vec::new(),
-            cells: HashMap::new(),
-        }
-    }
-
-    fn insert(&mut self, normal: DVec3, offset: f64) -> u32 {
-        let id = self.planes.len() as u32;
-        self.planes.push((normal, offset));
-        let home = self
-            .coordinates(normal, offset)
-            .map(|x| libm::floor(x) as i32);
-        self.cells.entry(home).or_default().push(id);
-        id
-    }
-
-    /// In units of cells.
-    fn coordinates(&self, normal: DVec3, offset: f64) -> [f64; 4] {
-        let n = normal / NORMAL_CELL;
-        [n.x, n.y, n.z, offset * self.scale / OFFSET_CELL]
-    }
-
-    /// The first plane that holds all corners.
-    fn find(&self, facet: &Facet) -> Option<u32> {
-        let holds = |&id: &u32| {
-            let (normal, offset) = self.planes[id as usize];
-            let off = |p: DVec3| (normal.dot(p) - offset).abs();
-            facet.corners.into_iter().all(|p| off(p) <= self.tolerance)
-        };
-        let mut found: Option<u32> = None;
-        for side in [1.0, -1.0] {
-            let at = self.coordinates(facet.normal * side, facet.offset * side);
-            let width = [NORMAL_CELL, NORMAL_CELL, NORMAL_CELL, OFFSET_CELL];
-            let ends: [[i32; 2]; 4] = std::array::from_fn(|i| {
-                let reach = INACCURACY / width[i];
-                [at[i] - reach, at[i] + reach].map(|x| libm::floor(x) as i32)
-            });
-            for which in 0..16 {
-                let bit = |i: usize| which >> i & 1;
-                // Nearly always both ends lie in one cell.
-                if (0..4).any(|i| bit(i) == 1 && ends[i][0] == ends[i][1]) {
-                    continue;
-                }
-                let cell = std::array::from_fn(|i| ends[i][bit(i)]);
-                let here = self.cells.get(&cell).into_iter().flatten();
-                let first = here.copied().filter(|id| holds(id)).min();
-                found = match (found, first) {
-                    (Some(a), Some(b)) => Some(a.min(b)),
-                    (a, b) => a.or(b),
-                };
-            }
-        }
-        found
-    }
-}
-
 /// Sets the facet planes of the meshes: planes among `surfaces` first, then those of larger
-/// triangles of other meshes. `tolerance` is a length.
+/// triangles of other meshes near by. `tolerance` is a length.
 pub(super) fn share_planes(
     surfaces: &[Surface],
     meshes: &mut [MeshOperand],
@@ -133,13 +29,14 @@ pub(super) fn share_planes(
         return;
     }
     let facets: Vec<Vec<Option<Facet>>> = meshes.iter().map(facets_of).collect();
+    let near = Nearness::new(&facets, tolerance);
     let mut plane_of: Vec<Vec<u32>> = Vec::with_capacity(meshes.len());
     let mut rest: Vec<(usize, usize)> = Vec::new();
     for (mesh, facets) in facets.iter().enumerate() {
         let find = |(triangle, facet): (usize, &Option<Facet>)| {
             let facet = facet.as_ref()?;
             let found = index.find(facet);
-            if found.is_none() && meshes.len() > 1 {
+            if found.is_none() && near.to_another(mesh, facet) {
                 rest.push((mesh, triangle));
             }
             found
@@ -171,6 +68,42 @@ pub(super) fn share_planes(
     let is_shared = |id: u32| id < exact || users[(id - exact) as usize].1;
     for (operand, planes) in meshes.iter_mut().zip(plane_of) {
         operand.planes = used_planes(&index, planes, is_shared, scene_size * SLACK);
+    }
+}
+
+/// More meshes than this are taken to be all near each other.
+const MANY_MESHES: usize = 2000;
+
+/// Which triangles come near other meshes.
+struct Nearness {
+    /// For each mesh the boxes of the others that meet its own; `None`: not worth finding out.
+    others: Option<Vec<Vec<Aabb>>>,
+}
+
+impl Nearness {
+    fn new(facets: &[Vec<Option<Facet>>], tolerance: f64) -> Self {
+        if facets.len() > MANY_MESHES {
+            return Self { others: None };
+        }
+        let corners = |of: &Vec<Option<Facet>>| {
+            Aabb::from_points(of.iter().flatten().flat_map(|facet| facet.corners))
+                .inflated(tolerance)
+        };
+        let boxes: Vec<Aabb> = facets.iter().map(corners).collect();
+        let others = boxes.iter().enumerate().map(|(mesh, own)| {
+            let meets = |&(other, bounds): &(usize, &Aabb)| other != mesh && bounds.overlaps(own);
+            let near = boxes.iter().enumerate().filter(meets);
+            near.map(|(_, bounds)| *bounds).collect()
+        });
+        Self {
+            others: Some(others.collect()),
+        }
+    }
+
+    fn to_another(&self, mesh: usize, facet: &Facet) -> bool {
+        let own = Aabb::from_points(facet.corners);
+        let meets = |others: &Vec<Vec<Aabb>>| others[mesh].iter().any(|b| b.overlaps(&own));
+        self.others.as_ref().is_none_or(meets)
     }
 }
 
@@ -211,4 +144,121 @@ fn facets_of(operand: &MeshOperand) -> Vec<Option<Facet>> {
     triangles
         .map(|corners| Facet::new(corners.map(|i| positions[i as usize])))
         .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::Arc;
+
+    use super::*;
+    use crate::csg::Lowering;
+    use crate::{MeshRule, SceneFrame, Solid, TriangleMesh};
+    use octray_math::{DAffine3, Ray};
+    use octray_tree::WalkCost;
+
+    /// The cube from 0 to 1, two triangles per face.
+    fn cube() -> TriangleMesh {
+        let corner =
+            |i: i32| DVec3::new(f64::from(i & 1), f64::from(i >> 1 & 1), f64::from(i >> 2));
+        let quads: [[u32; 4]; 6] = [
+            [0, 2, 3, 1],
+            [4, 5, 7, 6],
+            [0, 1, 5, 4],
+            [2, 6, 7, 3],
+            [0, 4, 6, 2],
+            [1, 3, 7, 5],
+        ];
+        let triangles = quads.map(|[a, b, c, d]| [[a, b, c], [a, c, d]]).concat();
+        TriangleMesh::new((0..8).map(corner).collect(), triangles).expect("valid")
+    }
+
+    fn lowered(solids: &[Solid]) -> Vec<MeshOperand> {
+        let mut lowering = Lowering::new(&SceneFrame::around_origin(4.0));
+        for solid in solids {
+            lowering.lower(solid).expect("not constant");
+        }
+        lowering.finish().2
+    }
+
+    fn shared(solids: &[Solid]) -> Vec<usize> {
+        lowered(solids)
+            .iter()
+            .map(|mesh| mesh.planes.len())
+            .collect()
+    }
+
+    fn mesh_cube(frame: DAffine3) -> Solid {
+        let solid = Solid::mesh(Arc::new(cube()), MeshRule::Strict).expect("sound");
+        solid.transform(frame).expect("invertible")
+    }
+
+    fn at(x: f64, y: f64, z: f64) -> DAffine3 {
+        DAffine3::from_translation(DVec3::new(x, y, z))
+    }
+
+    #[test]
+    fn planes_are_shared_with_other_operands_only() {
+        let turn = DAffine3::from_rotation_x(0.7) * DAffine3::from_rotation_z(0.4);
+        let block = |frame: DAffine3| {
+            let cuboid = Solid::cuboid(DVec3::ZERO, DVec3::ONE).expect("valid");
+            cuboid.transform(frame).expect("invertible")
+        };
+        for frame in [DAffine3::IDENTITY, turn] {
+            let mesh = mesh_cube(frame);
+            assert_eq!(shared(std::slice::from_ref(&mesh)), [0]);
+            assert_eq!(shared(&[mesh.clone(), block(frame)]), [6]);
+            assert_eq!(shared(&[block(frame), mesh.clone()]), [6]);
+            // Beside: one common plane, and the four that run along both.
+            assert_eq!(
+                shared(&[mesh.clone(), block(frame * at(1.0, 0.0, 0.0))]),
+                [5]
+            );
+            assert_eq!(
+                shared(&[mesh.clone(), mesh_cube(frame * at(1.0, 0.0, 0.0))]),
+                [5, 5]
+            );
+            assert_eq!(
+                shared(&[mesh.clone(), mesh_cube(frame * at(0.5, 0.25, 2.5))]),
+                [0, 0]
+            );
+            // Within the tolerance of 4 * 2^-40 and outside of it.
+            let aside = |by: f64| block(frame * at(1.0 + by, 0.25, 0.25));
+            assert_eq!(shared(&[mesh.clone(), aside(3e-12)]), [1]);
+            assert_eq!(shared(&[mesh.clone(), aside(5e-12)]), [0]);
+        }
+    }
+
+    #[test]
+    fn on_a_shared_plane_the_parameters_have_the_plane_s_bits() {
+        let turn = DAffine3::from_rotation_x(0.7) * DAffine3::from_rotation_z(0.4);
+        let top = Solid::half_space(turn.transform_vector3(DVec3::Z), 1.0).expect("valid");
+        let mut lowering = Lowering::new(&SceneFrame::around_origin(4.0));
+        for solid in [mesh_cube(turn), top] {
+            lowering.lower(&solid).expect("not constant");
+        }
+        let (_, surfaces, meshes) = lowering.finish();
+        let operand = &meshes[0];
+        let solid = crate::mesh::MeshSolid::new(&operand.mesh, &operand.scene_from_mesh, None);
+        let plain = solid.expect("sound");
+        let solid = plain.clone().with_planes(operand.planes.clone());
+        let (mut same, mut differed) = (0, 0);
+        for i in 0..500 {
+            let x = f64::from(i) / 500.0;
+            let target = turn.transform_point3(DVec3::new(x, 0.3 + 0.4 * x, 1.0));
+            let direction = DVec3::new(0.3 - x, 0.1, -1.0);
+            let ray = Ray::new(target - direction, direction);
+            let mut wanted = f64::NAN;
+            surfaces[0].crossings(&ray, |t| wanted = t);
+            let crossings = |solid: &crate::mesh::MeshSolid| {
+                let mut found = Vec::new();
+                solid.crossings(&ray, &mut found, &mut WalkCost::default());
+                found
+            };
+            let (found, before) = (crossings(&solid), crossings(&plain));
+            assert_eq!(found.len(), before.len());
+            same += usize::from(found.iter().any(|c| c.t == wanted));
+            differed += usize::from(found != before);
+        }
+        assert!(same == 500 && differed > 50, "{same} {differed}");
+    }
 }

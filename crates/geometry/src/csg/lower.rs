@@ -8,7 +8,7 @@ use super::code::{Code, Constant, Operation, Writer};
 use super::facets;
 use crate::mesh::FacetPlanes;
 use crate::profile::Formula;
-use crate::surface::{Surface, SurfaceTable};
+use crate::surface::{NearPair, Surface, SurfaceTable};
 use crate::{
     Composite, FaceId, MaterialId, Primitive, SceneFrame, Solid, SolidNode, SurfaceId, TriangleMesh,
 };
@@ -123,6 +123,18 @@ impl Lowering {
     #[must_use]
     pub const fn merged_surfaces(&self) -> usize {
         self.table.merged()
+    }
+
+    /// How far surfaces may be apart to be one, in units of the scene's size.
+    #[must_use]
+    pub const fn tolerance(&self) -> f64 {
+        self.table.tolerance()
+    }
+
+    /// The surfaces so far that nearly coincide with an earlier one.
+    #[must_use]
+    pub fn near_pairs(&self) -> Vec<NearPair> {
+        self.table.near_pairs()
     }
 
     fn visit(&mut self, solid: &Solid, context: &Context, writer: &mut Writer) -> Option<Constant> {

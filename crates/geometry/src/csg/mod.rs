@@ -9,6 +9,7 @@
 mod code;
 mod facets;
 mod lower;
+mod plane_index;
 mod sides;
 
 pub use code::{Code, Constant, changed_face, evaluate, faces, reduce, truth_on};

@@ -122,19 +122,65 @@ impl Curve {
         points[0]
     }
 
-    /// The two halves; of a curve with weights their outer weights are not 1.
+    /// The curve under a linear map of the plane and a shift.
+    #[must_use]
+    pub fn mapped(&self, map: &impl Fn(DVec2) -> DVec2) -> Self {
+        let mut all = *self;
+        for p in &mut all.points[..=self.degree] {
+            *p = (map(place(*p)) * p.z).extend(p.z);
+        }
+        all
+    }
+
+    /// The two halves. Those of a quadratic curve get outer weights of 1 again; of a cubic one
+    /// with weights they do not.
     #[must_use]
     pub fn halves(&self) -> [Self; 2] {
+        self.split(0.5)
+    }
+
+    /// The same with other end points, near those it has.
+    pub(super) fn with_ends(mut self, start: DVec2, end: DVec2) -> Self {
+        self.points[0] = start.extend(1.0);
+        self.points[self.degree] = end.extend(1.0);
+        self
+    }
+
+    /// The same with no control point at negative x: of a curve that bends once and lies at
+    /// positive x they are there by rounding alone.
+    pub(super) fn clamped(mut self) -> Self {
+        self.points.iter_mut().for_each(|p| p.x = p.x.max(0.0));
+        self
+    }
+
+    /// A quadratic curve with outer weights of 1 (Farin, section 12.5).
+    fn standard(mut self) -> Self {
+        let [a, b, c] = [self.points[0], self.points[1], self.points[2]];
+        let weight = b.z / (a.z * c.z).sqrt();
+        self.points[0] = place(a).extend(1.0);
+        self.points[1] = (place(b) * weight).extend(weight);
+        self.points[2] = place(c).extend(1.0);
+        self
+    }
+
+    /// The part from `u` in `(0, 1)` on, and what comes before it, in order; for curves of degree 1
+    /// or 2, and for cubic ones without weights.
+    #[must_use]
+    pub fn split(&self, u: f64) -> [Self; 2] {
         let (mut left, mut right) = (*self, *self);
         let mut points = self.points;
         for level in (1..=self.degree).rev() {
             for i in 0..level {
-                points[i] = (points[i] + points[i + 1]) * 0.5;
+                points[i] = points[i] + (points[i + 1] - points[i]) * u;
             }
             left.points[self.degree - level + 1] = points[0];
             right.points[level - 1] = points[level - 1];
         }
-        [left, right]
+        if self.degree == 2 {
+            [left, right].map(Self::standard)
+        } else {
+            [left, right]
+        }
     }
 
     /// `x`-, `y`- and weight-polynomial combined: `a x + b y + c w`, times the weight.

@@ -139,7 +139,8 @@ impl Maker<'_> {
             }
             self.has_loop[piece] = true;
         }
-        let polygon = chain::polygon(&each.corners, &lefts)?;
+        let mut lid = |a: DVec2, b: DVec2| self.side(PlaneSide::Line(a, b));
+        let polygon = chain::polygon(&each.corners, &lefts, &mut lid)?;
         if dents.is_empty()
             && bulges.len() == each.chords.len()
             && let Some(disc) = self.whole_disc(&bulges)

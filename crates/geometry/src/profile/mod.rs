@@ -18,5 +18,6 @@ pub use curve::Curve;
 pub use formula::{Formula, MAX_FORMULA_DEPTH};
 pub use region::{Edge, MAX_EDGES, Outline, Region};
 
+pub use lathe::Turning;
 pub(crate) use lathe::lathe;
 pub(crate) use prism::prism;

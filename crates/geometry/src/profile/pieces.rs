@@ -3,6 +3,7 @@
 use octray_math::{DVec2, transform};
 use robust::{Coord, orient2d};
 
+use super::contour::changes;
 use super::curve::Curve;
 use super::region::Edge;
 use crate::ShapeError;
@@ -102,6 +103,67 @@ pub(super) fn append(
         }
     }
     Ok(())
+}
+
+/// Appends what of a piece lies at `x >= 0`; for the rest, its projection onto the axis, so that
+/// outlines stay closed and enclose the same at positive x.
+pub(super) fn append_right_half(piece: &Piece, pieces: &mut Vec<Piece>) {
+    let on_axis = |p: DVec2| DVec2::new(p.x.max(0.0), p.y);
+    let curve = piece.curve();
+    if curve.control().all(|p| p.x >= 0.0) {
+        pieces.push(*piece);
+        return;
+    }
+    if curve.control().all(|p| p.x <= 0.0) {
+        push_line(on_axis(curve.start()), on_axis(curve.end()), pieces);
+        return;
+    }
+    // Where x changes its sign; a curve that bends once does so at most twice.
+    let x = curve.combined(1.0, 0.0, 0.0);
+    let mut parts = Vec::new();
+    let (mut rest, mut before) = (curve, 0.0);
+    changes(
+        &x,
+        |u| x.evaluate(u),
+        |u| {
+            if u > before && u < 1.0 {
+                let [part, after] = rest.split((u - before) / (1.0 - before));
+                parts.push(part);
+                (rest, before) = (after, u);
+            }
+        },
+    );
+    if parts.is_empty() && piece.start().x >= 0.0 && piece.end().x >= 0.0 {
+        pieces.push(*piece);
+        return;
+    }
+    parts.push(rest);
+    let last = parts.len() - 1;
+    for (i, part) in parts.into_iter().enumerate() {
+        let is_right = part.at(0.5).x > 0.0;
+        // Cut ends lie on the axis, up to the rounding taken away here.
+        let at_axis = |p: DVec2| DVec2::new(0.0, p.y);
+        let start = if i == 0 {
+            on_axis(part.start())
+        } else {
+            at_axis(part.start())
+        };
+        let end = if i == last {
+            on_axis(part.end())
+        } else {
+            at_axis(part.end())
+        };
+        match piece {
+            Piece::Line(..) => push_line(start, end, pieces),
+            _ if !is_right => push_line(start, end, pieces),
+            Piece::Arc { center, .. } if start != end => pieces.push(Piece::Arc {
+                center: *center,
+                ends: [start, end],
+            }),
+            _ if start != end => pieces.push(Piece::Bezier(part.with_ends(start, end).clamped())),
+            _ => {}
+        }
+    }
 }
 
 fn push_line(a: DVec2, b: DVec2, pieces: &mut Vec<Piece>) {

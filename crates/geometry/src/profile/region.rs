@@ -1,8 +1,8 @@
 //! Plane regions: what prisms and lathes are made of.
 
-use octray_math::DVec2;
+use octray_math::{DAffine3, DVec2};
 
-use super::pieces;
+use super::pieces::{self, Piece};
 use crate::ShapeError;
 
 /// The most edges a region may have.
@@ -87,7 +87,7 @@ impl Outline {
 /// Outlines may be in any order and orientation, be nested, touch, cross and repeat points.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Region {
-    pub(super) pieces: Vec<pieces::Piece>,
+    pub(super) pieces: Vec<Piece>,
     bounds: [DVec2; 2],
 }
 
@@ -108,6 +108,10 @@ impl Region {
                 pieces::append(from, edge, to, &mut pieces)?;
             }
         }
+        Self::of_pieces(pieces)
+    }
+
+    fn of_pieces(pieces: Vec<Piece>) -> Result<Self, ShapeError> {
         let Some(first) = pieces.first() else {
             return Err(ShapeError::BadProfile("has no area"));
         };
@@ -123,6 +127,46 @@ impl Region {
             return Err(ShapeError::BadProfile("has no area"));
         }
         Ok(Self { pieces, bounds })
+    }
+
+    /// The region under the part of an affine map that concerns the xy plane. Arcs stay arcs where
+    /// it keeps circles round.
+    ///
+    /// # Errors
+    /// What comes out has no area or is too large.
+    pub fn transformed(&self, map: &DAffine3) -> Result<Self, ShapeError> {
+        let (x, y) = (map.matrix3.x_axis.truncate(), map.matrix3.y_axis.truncate());
+        let shift = map.translation.truncate();
+        // Adding 0 makes -0 the same as 0.
+        let place = |p: DVec2| x * p.x + y * p.y + shift + DVec2::ZERO;
+        let (a, b) = (x.length_squared(), y.length_squared());
+        let is_round =
+            (a - b).abs() <= 4.0 * f64::EPSILON * a && x.dot(y).abs() <= 4.0 * f64::EPSILON * a;
+        let pieces = self.pieces.iter().map(|piece| match piece {
+            Piece::Line(a, b) => Piece::Line(place(*a), place(*b)),
+            Piece::Arc { center, ends } if is_round => Piece::Arc {
+                center: place(*center),
+                ends: ends.map(place),
+            },
+            curved => Piece::Bezier(curved.curve().mapped(&place)),
+        });
+        Self::of_pieces(
+            pieces
+                .filter(|piece| piece.start() != piece.end())
+                .collect(),
+        )
+    }
+
+    /// The part at `x >= 0`, for a lathe.
+    ///
+    /// # Errors
+    /// That part has no area.
+    pub fn right_half(&self) -> Result<Self, ShapeError> {
+        let mut pieces = Vec::with_capacity(self.pieces.len());
+        for piece in &self.pieces {
+            pieces::append_right_half(piece, &mut pieces);
+        }
+        Self::of_pieces(pieces)
     }
 
     /// The region within one polygon.

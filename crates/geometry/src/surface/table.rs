@@ -12,6 +12,7 @@ use octray_math::DVec3;
 
 use super::Surface;
 use super::fingerprint::Fingerprint;
+use super::near::{NearPair, near_pairs};
 use crate::SurfaceId;
 
 /// How far two surfaces may be apart, in units of the scene's size, to count as one: 2^-40, about
@@ -92,6 +93,12 @@ impl SurfaceTable {
     #[must_use]
     pub const fn merged(&self) -> usize {
         self.merged
+    }
+
+    /// The surfaces that nearly coincide with an earlier one (see [`NEAR`](super::NEAR)).
+    #[must_use]
+    pub fn near_pairs(&self) -> Vec<NearPair> {
+        near_pairs(&self.fingerprints)
     }
 
     /// The surfaces; a [`SurfaceId`] is an index.

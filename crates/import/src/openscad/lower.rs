@@ -7,10 +7,11 @@ use octray_scene::{MaterialId, SceneBuilder};
 use crate::{Diagnostics, Options, Span};
 
 use super::arguments::Arguments;
+use super::drawing::{Drawing, DrawingId};
 use super::modules::Module;
 use super::operand::{OpenFaces, Operand, Operation, Part};
 use super::paint::{Palette, Rgba, color_argument, is_complete};
-use super::placement::{in_plane, matrix};
+use super::placement::matrix;
 use super::polyhedron::Polyhedron;
 use super::primitives::Workshop;
 use super::syntax::Statement;
@@ -27,8 +28,8 @@ pub(super) struct Surroundings {
     pub(super) color: Option<Rgba>,
     /// Whether the statement is taken away from something, an odd number of times.
     pub(super) subtracted: bool,
-    /// Between which heights flat shapes are drawn out; `None` outside of `linear_extrude`.
-    pub(super) slab: Option<[f64; 2]>,
+    /// What becomes of flat shapes; `None` outside of `linear_extrude` and `rotate_extrude`.
+    pub(super) drawing: Option<DrawingId>,
 }
 
 /// Makes objects of statements.
@@ -38,6 +39,8 @@ pub(super) struct Lowering<'l> {
     pub(super) budget: Budget,
     pub(super) builder: SceneBuilder,
     pub(super) palette: Palette,
+    /// What becomes of flat shapes, by [`DrawingId`].
+    pub(super) drawings: Vec<Drawing>,
 }
 
 impl<'l> Lowering<'l> {
@@ -48,6 +51,7 @@ impl<'l> Lowering<'l> {
             budget: Budget::new(options.memory_budget),
             builder: SceneBuilder::new(),
             palette: Palette::default(),
+            drawings: Vec::new(),
         }
     }
 
@@ -66,9 +70,13 @@ impl<'l> Lowering<'l> {
             | Module::Cylinder
             | Module::Polyhedron
             | Module::LinearExtrude
-                if around.slab.is_some() =>
+            | Module::RotateExtrude
+                if around.drawing.is_some() =>
             {
-                let message = format!("`{}` is a solid inside of `linear_extrude`", statement.name);
+                let message = format!(
+                    "`{}` is a solid, but something flat is needed here",
+                    statement.name
+                );
                 self.left_out(statement.span, &message);
                 Operand::OfOtherDimension
             }
@@ -76,15 +84,19 @@ impl<'l> Lowering<'l> {
                 self.primitive(module, statement)
             }
             Module::LinearExtrude => self.extruded(statement, around),
+            Module::RotateExtrude => self.turned(statement, around),
             Module::Union => self.combined(Operation::Union, statement, around),
             Module::Intersection => self.combined(Operation::Intersection, statement, around),
             Module::Difference => self.combined(Operation::Difference, statement, around),
             Module::Transform => {
                 let mut own = matrix(statement, self.diagnostics);
-                if around.slab.is_some() {
-                    own = in_plane(own);
+                let mut inside = around;
+                if let Some(drawing) = around.drawing {
+                    let (there, within) = self.flat_transform(own, drawing);
+                    own = there;
+                    inside.drawing = Some(within);
                 }
-                let operand = self.combined(Operation::Union, statement, around);
+                let operand = self.combined(Operation::Union, statement, inside);
                 self.transformed(operand, own, statement.span)
             }
             Module::Color => {
@@ -99,7 +111,7 @@ impl<'l> Lowering<'l> {
                 }
             }
             // An operation on nothing is nothing, supported or not.
-            Module::FlatOperation if statement.children.is_empty() && around.slab.is_none() => {
+            Module::FlatOperation if statement.children.is_empty() && around.drawing.is_none() => {
                 Operand::OfOtherDimension
             }
             Module::FlatOperation if statement.children.is_empty() => {
@@ -108,22 +120,12 @@ impl<'l> Lowering<'l> {
             Module::UnsupportedOperation if statement.children.is_empty() => {
                 Operand::Solid(Part::leaf(Solid::empty()))
             }
-            Module::Circle
-            | Module::Square
-            | Module::Polygon
-            | Module::FlatShape
-            | Module::FlatOperation
-                if around.slab.is_none() =>
-            {
-                let message = format!(
-                    "`{}` is two-dimensional, which is only supported inside of `linear_extrude`",
-                    statement.name
-                );
-                self.left_out(statement.span, &message);
-                Operand::OfOtherDimension
-            }
-            Module::Circle | Module::Square | Module::Polygon => {
-                self.flat_shape(module, statement, around.slab.unwrap_or_default())
+            Module::Circle | Module::Square | Module::Polygon => match around.drawing {
+                Some(drawing) => self.flat_shape(module, statement, drawing),
+                None => self.flat_alone(statement),
+            },
+            Module::FlatShape | Module::FlatOperation if around.drawing.is_none() => {
+                self.flat_alone(statement)
             }
             Module::FlatShape
             | Module::FlatOperation
@@ -146,6 +148,17 @@ impl<'l> Lowering<'l> {
             }
             operand => operand,
         }
+    }
+
+    /// Something flat that is neither drawn out nor turned.
+    fn flat_alone(&mut self, statement: &Statement<'_>) -> Operand {
+        let message = format!(
+            "`{}` is two-dimensional, which is only supported inside of `linear_extrude` and \
+             `rotate_extrude`",
+            statement.name
+        );
+        self.left_out(statement.span, &message);
+        Operand::OfOtherDimension
     }
 
     pub(super) fn workshop(&mut self) -> Workshop<'_> {

@@ -18,6 +18,7 @@
 mod arguments;
 mod color_names;
 mod cursor;
+mod drawing;
 mod extrude;
 mod facets;
 mod flat;

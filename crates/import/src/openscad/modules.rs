@@ -17,6 +17,7 @@ pub(super) enum Module {
     Square,
     Polygon,
     LinearExtrude,
+    RotateExtrude,
     /// A shape in the plane z = 0; not supported.
     FlatShape,
     /// Makes something flat of its children; not supported.
@@ -49,7 +50,7 @@ const MODULES: [(&str, Module); 32] = [
     ("projection", Module::FlatOperation),
     ("import", Module::UnsupportedShape),
     ("linear_extrude", Module::LinearExtrude),
-    ("rotate_extrude", Module::UnsupportedOperation),
+    ("rotate_extrude", Module::RotateExtrude),
     ("surface", Module::UnsupportedShape),
     ("hull", Module::UnsupportedOperation),
     ("minkowski", Module::UnsupportedOperation),

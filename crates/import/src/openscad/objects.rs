@@ -17,7 +17,7 @@ impl Lowering<'_> {
         let around = Surroundings {
             color: None,
             subtracted: false,
-            slab: None,
+            drawing: None,
         };
         for statement in statements {
             self.object(statement, DAffine3::IDENTITY, around);

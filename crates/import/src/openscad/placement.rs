@@ -42,12 +42,3 @@ pub(super) fn matrix(statement: &Statement<'_>, diagnostics: &mut Diagnostics) -
     let column = |k: usize| DVec3::new(m[0][k], m[1][k], m[2][k]) / m[3][3];
     DAffine3::from_mat3_translation(DMat3::from_cols(column(0), column(1), column(2)), column(3))
 }
-
-/// What a transform does to flat shapes: heights stay as they are, as in OpenSCAD.
-pub(super) fn in_plane(place: DAffine3) -> DAffine3 {
-    let m = place.matrix3;
-    DAffine3::from_mat3_translation(
-        DMat3::from_cols(m.x_axis.with_z(0.0), m.y_axis.with_z(0.0), DVec3::Z),
-        place.translation.with_z(0.0),
-    )
-}

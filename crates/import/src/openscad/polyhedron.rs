@@ -97,7 +97,11 @@ impl Workshop<'_> {
                 return Polyhedron::Solid(Solid::empty());
             }
         };
-        let triangles = if closed && signed_volume(&corners, &triangles) < 0.0 {
+        let inside_out = closed && signed_volume(&corners, &triangles) < 0.0;
+        if inside_out {
+            faces.iter_mut().for_each(|face| face.reverse());
+        }
+        let triangles = if inside_out {
             let message = "the faces of this polyhedron are counter-clockwise seen from outside; \
                            they are turned round";
             self.diagnostics.warning(span, message);
@@ -105,6 +109,9 @@ impl Workshop<'_> {
         } else {
             triangles
         };
+        if closed && let Ok(exact) = Solid::exact_polyhedron(&corners, &faces) {
+            return Polyhedron::Solid(exact);
+        }
         let mesh = match TriangleMesh::new(corners, triangles) {
             Ok(mesh) => Arc::new(mesh),
             Err(error) => {

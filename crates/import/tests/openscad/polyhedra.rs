@@ -4,7 +4,7 @@ use octray_geometry::{Primitive, SolidNode};
 use octray_math::DVec3;
 use octray_scene::Shape;
 
-use crate::reading::{clean, mesh_volume, only, primitive, read};
+use crate::reading::{clean, column_volume, only, primitive, read};
 
 #[test]
 fn polyhedra_are_convex_closed_or_open() {
@@ -57,12 +57,12 @@ fn l_shape(order: impl Fn(Vec<u32>) -> Vec<u32>) -> String {
 }
 
 #[test]
-fn concave_polyhedra_are_closed_meshes_that_look_out() {
+fn concave_polyhedra_are_solids_that_look_out() {
     let scene = clean(&l_shape(|face| face));
-    assert!((mesh_volume(only(&scene)) - 25.0).abs() < 1e-12);
+    assert!((column_volume(only(&scene), 0.5) - 25.0).abs() < 1e-12);
     let reversed = |face: Vec<u32>| face.into_iter().rev().collect::<Vec<u32>>();
     let (scene, warnings) = read(&l_shape(reversed));
-    assert!((mesh_volume(only(&scene)) - 25.0).abs() < 1e-12);
+    assert!((column_volume(only(&scene), 0.5) - 25.0).abs() < 1e-12);
     assert!(warnings[0].contains("turned round"), "{warnings:?}");
     let (scene, warnings) = read(&l_shape(|f| {
         if f.contains(&9) && f.len() == 4 {
@@ -71,7 +71,7 @@ fn concave_polyhedra_are_closed_meshes_that_look_out() {
             f
         }
     }));
-    assert!((mesh_volume(only(&scene)) - 25.0).abs() < 1e-12);
+    assert!((column_volume(only(&scene), 0.5) - 25.0).abs() < 1e-12);
     assert_eq!(warnings.len(), 1, "{warnings:?}");
 }
 

@@ -1,10 +1,13 @@
 //! Dumps as texts, and what they came to.
 
 use std::path::Path;
+use std::sync::Arc;
 
 use octray_geometry::{Primitive, Solid, SolidNode};
 use octray_import::{Disk, Imported, Options, openscad};
-use octray_scene::{Object, Scene, Shape};
+use octray_math::{DVec2, DVec3, Ray};
+use octray_scene::{Material, Object, Scene, SceneBuilder, Shape};
+use octray_world::{Counters, RayQuery, World, WorldConfig};
 
 pub(crate) fn read_with(text: &str, facets: bool) -> Imported {
     let options = Options {
@@ -66,15 +69,26 @@ pub(crate) fn primitive(solid: &Solid) -> &Primitive {
     }
 }
 
-/// The signed volume of the mesh of a solid.
-pub(crate) fn mesh_volume(solid: &Solid) -> f64 {
-    let Primitive::Mesh(mesh) = primitive(solid) else {
-        panic!("not a mesh: {solid:?}");
-    };
-    let corner = |i: u32| mesh.positions()[i as usize];
-    let tetrahedra = mesh.triangles().iter().map(|t| {
-        let [a, b, c] = t.map(corner);
-        a.dot(b.cross(c)) / 6.0
-    });
-    tetrahedra.sum()
+/// The volume of a solid by lines along z through the middles of squares of side `step`: exact
+/// where all corners lie on a grid of such squares and all walls are upright.
+pub(crate) fn column_volume(solid: &Solid, step: f64) -> f64 {
+    let mut builder = SceneBuilder::new();
+    let material = builder.add_material(Material::default());
+    builder.add_object(Object::solid("part", solid.clone(), material));
+    let scene = Arc::new(builder.build().expect("valid"));
+    let world = World::prepare(scene, &WorldConfig::default()).expect("small");
+    let bounds = solid.bounds();
+    let steps = ((bounds.max - bounds.min) / step).ceil();
+    let mut sum = 0.0;
+    for i in 0..steps.x as u32 {
+        for j in 0..steps.y as u32 {
+            let middle = DVec2::new(f64::from(i) + 0.5, f64::from(j) + 0.5) * step;
+            let origin = (bounds.min.truncate() + middle).extend(0.0);
+            let query = RayQuery::new(Ray::new(origin, DVec3::Z));
+            let (mut hits, mut counters) = (Vec::new(), Counters::default());
+            world.crossings(&query, true, &mut hits, &mut counters);
+            sum += hits.chunks_exact(2).map(|h| h[1].t - h[0].t).sum::<f64>();
+        }
+    }
+    sum * step * step
 }

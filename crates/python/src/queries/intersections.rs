@@ -311,6 +311,13 @@ impl Intersections {
         self.chords.len()
     }
 
+    fn __iter__(slf: &Bound<'_, Self>) -> EachRay {
+        EachRay {
+            all: slf.clone().unbind(),
+            next: 0,
+        }
+    }
+
     fn __getitem__(&self, key: &Bound<'_, PyAny>) -> PyResult<Self> {
         let count = self.chords.len();
         if let Ok(slice) = key.cast::<PySlice>() {
@@ -340,6 +347,28 @@ impl Intersections {
             self.items().len(),
             self.chords.len()
         )
+    }
+}
+
+/// Goes through the rays one by one.
+#[pyclass(module = "octray")]
+struct EachRay {
+    all: Py<Intersections>,
+    next: usize,
+}
+
+#[pymethods]
+impl EachRay {
+    fn __iter__(slf: PyRef<'_, Self>) -> PyRef<'_, Self> {
+        slf
+    }
+
+    fn __next__(&mut self) -> Option<Intersections> {
+        let all = self.all.get();
+        (self.next < all.chords.len()).then(|| {
+            self.next += 1;
+            all.part(std::iter::once(self.next - 1))
+        })
     }
 }
 

@@ -51,6 +51,11 @@ impl Node {
         }
     }
 
+    /// Whether the word of a node says that it is empty.
+    const fn is_empty(word: u32) -> bool {
+        word & 3 == 0
+    }
+
     pub(crate) const fn decode(word: u32) -> Self {
         let payload = word >> TAG_BITS;
         match word & 3 {

@@ -22,7 +22,20 @@ struct Slabs {
     origin: DVec3,
     inverse: DVec3,
     parallel: [bool; 3],
+    /// Whether the line goes down the axis.
+    backward: [bool; 3],
     margin: f64,
+}
+
+/// The larger of two numbers, and the smaller, where neither is NaN: one instruction each.
+#[inline]
+fn later(a: f64, b: f64) -> f64 {
+    if a > b { a } else { b }
+}
+
+#[inline]
+fn earlier(a: f64, b: f64) -> f64 {
+    if a < b { a } else { b }
 }
 
 impl Slabs {
@@ -38,12 +51,11 @@ impl Slabs {
             }
             return Interval::ALL;
         }
-        // Finite times finite: no NaN, so a plain comparison does, here and below.
         let (a, b) = (low * self.inverse[axis], high * self.inverse[axis]);
-        if a < b {
-            Interval::new(a, b)
-        } else {
+        if self.backward[axis] {
             Interval::new(b, a)
+        } else {
+            Interval::new(a, b)
         }
     }
 
@@ -54,26 +66,34 @@ impl Slabs {
         })
     }
 
-    /// The slabs of a divided cell's lower and upper children on each axis: eight cubes of `size`
-    /// share six of them.
+    /// The slabs of a divided cell's halves on one axis, each with the number of the half, the one
+    /// that the line enters last first.
     #[inline]
-    fn halves(&self, min: DVec3, size: f64) -> [[Interval; 2]; 3] {
-        let both = |axis: usize| {
-            [
-                self.slab(axis, min[axis], size),
-                self.slab(axis, min[axis] + size, size),
-            ]
+    fn halves(&self, axis: usize, min: f64, size: f64) -> [Half; 2] {
+        let half = |upper: usize| {
+            let min = if upper == 1 { min + size } else { min };
+            let Interval { start, end } = self.slab(axis, min, size);
+            Half {
+                start,
+                end,
+                min,
+                upper,
+            }
         };
-        [both(0), both(1), both(2)]
+        let near = usize::from(self.backward[axis]);
+        [half(1 - near), half(near)]
     }
 }
 
-/// The common part of two intervals without NaN, `None` if they have none.
-#[inline]
-fn common(a: &Interval, b: &Interval) -> Option<Interval> {
-    let start = if a.start > b.start { a.start } else { b.start };
-    let end = if a.end < b.end { a.end } else { b.end };
-    (start <= end).then_some(Interval { start, end })
+/// Half of a divided cell on one axis.
+#[derive(Clone, Copy)]
+struct Half {
+    /// Where the line enters and leaves it.
+    start: f64,
+    end: f64,
+    /// Its lower side.
+    min: f64,
+    upper: usize,
 }
 
 impl CellTree {
@@ -97,9 +117,9 @@ impl CellTree {
             // A reciprocal that overflows is as good as parallel: the line leaves the slab beyond
             // any parameter that matters.
             parallel: d.to_array().map(|x| !x.recip().is_finite()),
+            backward: d.to_array().map(|x| x < 0.0),
             margin: self.root.size().x * (0.5 * Self::CONTENT_MARGIN),
         };
-        let mirror = d.to_array().map(|x| usize::from(x < 0.0));
         let mut limit = within.end;
         let mut entered = 0;
         let span = slabs.clip(self.root.min, self.root.size().x, within);
@@ -125,35 +145,32 @@ impl CellTree {
                 Node::Divided(block) => {
                     let size = cell.size * 0.5;
                     let children = &self.blocks[block as usize];
-                    let [x, y, z] = slabs.halves(cell.min, size);
-                    // The farthest octant is pushed first; a half that the line misses takes its
-                    // octants along.
-                    for k in [1, 0].map(|far| far ^ mirror[2]) {
-                        let Some(in_z) = common(&cell.span, &z[k]) else {
-                            continue;
-                        };
-                        for j in [1, 0].map(|far| far ^ mirror[1]) {
-                            let Some(in_zy) = common(&in_z, &y[j]) else {
-                                continue;
-                            };
-                            for i in [1, 0].map(|far| far ^ mirror[0]) {
-                                let node = children[i | j << 1 | k << 2];
-                                if matches!(Node::decode(node), Node::Empty(_)) {
-                                    continue;
-                                }
-                                let Some(span) = common(&in_zy, &x[i]) else {
-                                    continue;
-                                };
-                                let upper = DVec3::new(i as f64, j as f64, k as f64);
-                                let min = cell.min + upper * size;
-                                stack.push(Waiting {
-                                    node,
-                                    min,
-                                    size,
-                                    span,
-                                });
-                            }
-                        }
+                    let x = slabs.halves(0, cell.min.x, size);
+                    let y = slabs.halves(1, cell.min.y, size);
+                    let z = slabs.halves(2, cell.min.z, size);
+                    // Which octants the line meets nobody can guess, so all are decided without
+                    // a branch. Octants are numbered from the last that the line enters.
+                    let mut spans = [Interval::EMPTY; 8];
+                    let mut met = 0_u32;
+                    for octant in 0..8 {
+                        let (x, y, z) = (&x[octant & 1], &y[octant >> 1 & 1], &z[octant >> 2]);
+                        let start = later(later(cell.span.start, z.start), later(y.start, x.start));
+                        let end = earlier(earlier(cell.span.end, z.end), earlier(y.end, x.end));
+                        let node = children[x.upper | y.upper << 1 | z.upper << 2];
+                        spans[octant] = Interval { start, end };
+                        let is_met = (start <= end) & !Node::is_empty(node);
+                        met |= u32::from(is_met) << octant;
+                    }
+                    while met != 0 {
+                        let octant = met.trailing_zeros() as usize;
+                        met &= met - 1;
+                        let (x, y, z) = (&x[octant & 1], &y[octant >> 1 & 1], &z[octant >> 2]);
+                        stack.push(Waiting {
+                            node: children[x.upper | y.upper << 1 | z.upper << 2],
+                            min: DVec3::new(x.min, y.min, z.min),
+                            size,
+                            span: spans[octant],
+                        });
                     }
                 }
             }

@@ -65,6 +65,8 @@ pub(crate) struct Solids {
     outer: Option<u32>,
     /// The leaf that holds everything, where the cells do not know what empty space is.
     whole: Option<u32>,
+    /// The ranks of the solids that hold every point: leaves know only the first of them.
+    everywhere: Vec<u32>,
     merged_surfaces: usize,
 }
 
@@ -169,6 +171,9 @@ impl Solids {
         let Some(leaf) = self.outer else { return };
         scratch.begin(self.surfaces.len() + self.meshes.len());
         self.solids_in(line, leaf, line.origin, ranks, scratch, counters);
+        ranks.extend(&self.everywhere);
+        ranks.sort_unstable();
+        ranks.dedup();
     }
 
     /// The region at parameter `s` of the line.

@@ -31,6 +31,12 @@ impl Solids {
         [mesh(false)..mesh(true), face(false)..face(true)]
     }
 
+    /// How many of these faces stand for whole meshes.
+    pub(crate) fn mesh_literals(&self, faces: &Range<u32>) -> u32 {
+        let before = |face: u32| self.meshes.partition_point(|m| m.literal < face);
+        (before(faces.end) - before(faces.start)) as u32
+    }
+
     /// Whether the face is of the solids.
     pub(crate) fn has(&self, face: FaceId) -> bool {
         face.0 < self.face_count()

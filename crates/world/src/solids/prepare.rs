@@ -117,9 +117,13 @@ impl Solids {
 
         let mut root = Content::default();
         let mut unbounded = Content::default();
+        let mut everywhere = Vec::new();
         for (id, boundary, clip) in lowered {
             let rank = rank_of[id.0 as usize];
             let shell = ranked[rank as usize].shell;
+            if !shell && boundary == Err(Constant::True) {
+                everywhere.push(rank);
+            }
             add(&mut root, rank, shell, &boundary, clip.as_ref());
             if !candidates[rank as usize].bounds.is_bounded() {
                 add(&mut unbounded, rank, shell, &boundary, clip.as_ref());
@@ -191,6 +195,7 @@ impl Solids {
             volumes,
             outer,
             whole,
+            everywhere,
             merged_surfaces,
         })
     }

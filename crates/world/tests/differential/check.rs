@@ -52,6 +52,8 @@ pub(crate) enum Wrong {
     Region,
     /// A wall of no thickness.
     Skin,
+    /// The oracle's quick answer is not its exact one.
+    Oracle,
 }
 
 /// A disagreement, with what is known of it.
@@ -213,7 +215,9 @@ fn points(sight: &Sight<'_>, ends: &[f64]) -> Vec<f64> {
             points.extend([t - multiple * near, t + multiple * near]);
         }
     }
-    points.retain(|t| t.is_finite() && !ends.contains(t));
+    // Products of subnormal numbers have no error terms.
+    let normal = |t: f64| t == 0.0 || (t.is_finite() && t.abs() > 1e-200);
+    points.retain(|t| normal(*t) && !ends.contains(t));
     points.sort_by(f64::total_cmp);
     points
 }
@@ -290,6 +294,10 @@ fn check_region(
 /// hold the line too: there is no wall. Whether that could be compared.
 fn check_in_face(sight: &Sight<'_>, engine: &Engine<'_>, t: f64) -> Result<bool, Disagreement> {
     let distance = 1024.0 * sight.uncertainty(t);
+    // Far away from the scene, planes that are apart in it are as good as one.
+    if sight.ray().at(t).distance(sight.center()) > 4.0 * sight.radius() {
+        return Ok(false);
+    }
     let Some(normal) = sight.shared_normal(t, 4.0 * distance) else {
         return Ok(false);
     };
@@ -330,11 +338,15 @@ fn contradiction(
     what: &str,
 ) -> Result<(), Disagreement> {
     let exact = sight.oracle.exact_answers(sight.ray(), t);
-    let confirmed = |(answer, exact): (&Answer, &Answer)| answer.is_none() || answer == exact;
-    assert!(
-        answers.iter().zip(&exact).all(confirmed),
-        "the oracle contradicts itself at {t:?}: {answers:?}, exactly {exact:?}"
-    );
+    let confirmed = |(answer, exact): (&Answer, &Answer)| {
+        answer.is_none() || exact.is_none() || answer == exact
+    };
+    if !answers.iter().zip(&exact).all(confirmed) {
+        return disagree(
+            Wrong::Oracle,
+            format!("at t = {t:?}: {answers:?}, exactly {exact:?}"),
+        );
+    }
     let (point, off) = (sight.ray().at(t), sight.uncertainty(t));
     let chords = engine
         .objects
@@ -357,7 +369,9 @@ fn check_skins(subject: &Subject, sight: &Sight<'_>, hits: &[Hit]) -> Result<(),
     let ray = sight.ray();
     let thin = sight.parameter(subject.oracle.scene_size() * SURFACE_TOLERANCE / 16.0);
     let far = ray.origin.length().max(sight.center().length());
-    if subject.is_delicate || far > 64.0 * subject.oracle.scene_size() {
+    // Nor where they only touch, which looks the same in space that is squashed.
+    let squashed = subject.oracle.worst_condition() > 100.0;
+    if subject.is_delicate || squashed || far > 64.0 * subject.oracle.scene_size() {
         return Ok(());
     }
     for pair in hits.windows(2) {

@@ -5,15 +5,20 @@ use octray_math::transform;
 
 use crate::check::{Tally, Wrong, check};
 use crate::model::Case;
-use crate::text::{Term, parse, read_case, write_case};
+use crate::text::{Term, UNWRITTEN, parse, read_case, write_case};
 
 /// The smallest case that could be found, with the same kind of disagreement.
 pub(crate) fn shrink(case: &Case, wrong: Wrong) -> Case {
     let mut best = write_case(case);
+    if best.contains(UNWRITTEN) {
+        return case.clone();
+    }
     let mut budget = 4000_u32;
     loop {
         let term = parse(&best);
-        let shorter = variants(&term).into_iter().find_map(|variant| {
+        // Other numbers may pull boundaries apart that coincide: then a skin is real.
+        let numbers = wrong != Wrong::Skin;
+        let shorter = variants(&term, numbers).into_iter().find_map(|variant| {
             let case = read_case(&variant);
             let text = write_case(&case);
             if text.len() >= best.len() || budget == 0 {
@@ -59,6 +64,9 @@ fn is_valid(solid: &Solid) -> bool {
             }
             Primitive::Torus { major, minor } => Solid::torus(*major, *minor).is_ok(),
             Primitive::HalfSpace { normal, .. } => (normal.length() - 1.0).abs() < 1e-15,
+            Primitive::Superellipsoid { exponents: [e, n] } => {
+                e.max(*n) <= 2.0 && Solid::superellipsoid(*e, *n).is_ok()
+            }
             _ => true,
         },
         SolidNode::Transformed {
@@ -73,9 +81,10 @@ fn is_valid(solid: &Solid) -> bool {
 }
 
 /// Everything one step simpler: the large steps first.
-fn variants(term: &Term) -> Vec<Term> {
+fn variants(term: &Term, numbers: bool) -> Vec<Term> {
     let mut all = Vec::new();
     match term {
+        Term::Word(_) if !numbers => {}
         Term::Word(word) => all.extend(simpler_numbers(word).into_iter().map(Term::Word)),
         Term::List(terms) => {
             let head = match terms.first() {
@@ -103,8 +112,10 @@ fn variants(term: &Term) -> Vec<Term> {
                 all.push(Term::List(fewer));
             }
             // The count of a polyhedron's planes must stay what it is.
-            for index in (1..terms.len()).filter(|_| head != "convex") {
-                for variant in variants(&terms[index]) {
+            for index in
+                (1..terms.len()).filter(|_| !matches!(head, "convex" | "quadric" | "polynomial"))
+            {
+                for variant in variants(&terms[index], numbers) {
                     let mut changed = terms.clone();
                     changed[index] = variant;
                     all.push(Term::List(changed));

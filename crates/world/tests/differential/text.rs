@@ -11,10 +11,25 @@
 use std::fmt::Write;
 use std::sync::Arc;
 
-use octray_geometry::{ConvexPolyhedron, Primitive, Solid, SolidNode};
-use octray_math::{DAffine3, DVec3, Ray};
+use octray_geometry::surface::QuadricForm;
+use octray_geometry::{ConvexPolyhedron, Polynomial, Primitive, Solid, SolidNode};
+use octray_math::{Aabb, DAffine3, DVec3, Ray};
 
 use crate::model::{Case, Model, Part};
+
+/// Quadrics are written by their place here.
+const FORMS: [QuadricForm; 7] = [
+    QuadricForm::OneSheet,
+    QuadricForm::TwoSheets,
+    QuadricForm::DoubleCone,
+    QuadricForm::EllipticParaboloid,
+    QuadricForm::HyperbolicParaboloid,
+    QuadricForm::HyperbolicCylinder,
+    QuadricForm::ParabolicCylinder,
+];
+
+/// Stands for a primitive that has no text.
+pub(crate) const UNWRITTEN: &str = "unwritten";
 
 fn numbers(out: &mut String, values: impl IntoIterator<Item = f64>) {
     for value in values {
@@ -75,6 +90,18 @@ fn write_primitive(out: &mut String, primitive: &Primitive) {
             numbers(out, planes.flat_map(|(n, d)| [n.x, n.y, n.z, *d]));
             numbers(out, polyhedron.vertices.iter().flat_map(|v| v.to_array()));
         }
+        Primitive::Quadric(form) => {
+            let index = FORMS.iter().position(|f| f == form).expect("listed");
+            put("quadric", &[index as f64]);
+        }
+        Primitive::Polynomial { polynomial, bounds } => {
+            put("polynomial", &[polynomial.degree() as f64]);
+            numbers(out, [bounds.min.to_array(), bounds.max.to_array()].concat());
+            numbers(out, polynomial.coefficients().iter().copied());
+        }
+        Primitive::Superellipsoid { exponents } => put("superellipsoid", exponents),
+        // Made from outlines that it does not keep: to be found again by its seed.
+        Primitive::Composite(_) => out.push_str(UNWRITTEN),
         other => panic!("no text for {other:?}"),
     }
 }
@@ -231,6 +258,17 @@ fn read_primitive(head: &str, v: &[f64]) -> Primitive {
                 vertices: vertices.chunks(3).map(at).collect(),
             }))
         }
+        "quadric" => Primitive::Quadric(FORMS[v[0] as usize]),
+        "polynomial" => {
+            let polynomial = Polynomial::new(v[0] as usize, &v[7..]).expect("a polynomial");
+            Primitive::Polynomial {
+                polynomial: Arc::new(polynomial),
+                bounds: Aabb::new(at(&v[1..]), at(&v[4..])),
+            }
+        }
+        "superellipsoid" => Primitive::Superellipsoid {
+            exponents: [v[0], v[1]],
+        },
         other => panic!("no primitive is called {other}"),
     }
 }

@@ -24,13 +24,13 @@ pub(crate) enum Recipe {
     Cylinder(f64, f64, f64),
     Cone(f64, f64, f64, f64),
     Torus(f64, f64),
+    /// A region drawn out between two heights, and turned about the axis.
+    Prism(Profile, f64, f64),
+    Lathe(Profile),
     Quadric([f64; 10]),
     /// A torus as a quartic.
     Quartic(f64, f64),
     Superellipsoid(f64, f64),
-    /// A region drawn out between two heights, and turned about the axis.
-    Prism(Profile, f64, f64),
-    Lathe(Profile),
     Moved(Box<Recipe>, DAffine3),
     Union(Box<Recipe>, Box<Recipe>),
     Intersection(Box<Recipe>, Box<Recipe>),
@@ -54,6 +54,12 @@ impl Recipe {
                 signed((rho - r).max(slab(*z0, *z1)))
             }
             Self::Torus(major, minor) => signed(libm::hypot(rho - major, p.z) - minor),
+            Self::Prism(profile, z0, z1) => {
+                let (inside, margin) = profile.contains(p.truncate());
+                let (within, height) = signed(slab(*z0, *z1));
+                (inside && within, margin.min(height))
+            }
+            Self::Lathe(profile) => profile.contains(DVec2::new(rho, p.z)),
             Self::Quadric(c) => {
                 let DVec3 { x, y, z } = p;
                 let terms = [x * x, y * y, z * z, x * y, x * z, y * z, x, y, z, 1.0];
@@ -71,12 +77,6 @@ impl Recipe {
                 let flat = p.abs().min_element().min(1.0);
                 (value < 0.0, value.abs().min(flat))
             }
-            Self::Prism(profile, z0, z1) => {
-                let (inside, margin) = profile.contains(p.truncate());
-                let (within, height) = signed(slab(*z0, *z1));
-                (inside && within, margin.min(height))
-            }
-            Self::Lathe(profile) => profile.contains(DVec2::new(rho, p.z)),
             Self::Moved(inner, m) => inner.contains(m.inverse().transform_point3(p)),
             Self::Complement(a) => {
                 let (inside, margin) = a.contains(p);
@@ -178,11 +178,11 @@ fn primitive() -> impl Strategy<Value = Model> {
             Recipe::Cone(r0, r1, z, z + h)
         }),
         (length(), length()).prop_map(|(major, minor)| Recipe::Torus(major, minor)),
+        (profile(false), grid(), length()).prop_map(|(p, z, h)| Recipe::Prism(p, z, z + h)),
+        profile(true).prop_map(Recipe::Lathe),
         quadric().prop_map(Recipe::Quadric),
         (length(), length()).prop_map(|(major, minor)| Recipe::Quartic(major, minor)),
         (exponent(), exponent()).prop_map(|(e, n)| Recipe::Superellipsoid(e, n)),
-        (profile(false), grid(), length()).prop_map(|(p, z, h)| Recipe::Prism(p, z, z + h)),
-        profile(true).prop_map(Recipe::Lathe),
     ];
     recipe.prop_map(|recipe| {
         let solid = match &recipe {
@@ -191,13 +191,13 @@ fn primitive() -> impl Strategy<Value = Model> {
             Recipe::Cylinder(r, z0, z1) => Solid::cylinder(*r, *z0, *z1),
             Recipe::Cone(r0, r1, z0, z1) => Solid::cone(*r0, *r1, *z0, *z1),
             Recipe::Torus(major, minor) => Solid::torus(*major, *minor),
+            Recipe::Prism(profile, z0, z1) => Solid::prism(&profile.region, *z0, *z1),
+            Recipe::Lathe(profile) => Solid::lathe(&profile.region),
             Recipe::Quadric(c) => Solid::quadric(*c),
             Recipe::Quartic(major, minor) => {
                 Polynomial::new(4, &torus(*major, *minor)).and_then(Solid::polynomial)
             }
             Recipe::Superellipsoid(e, n) => Solid::superellipsoid(*e, *n),
-            Recipe::Prism(profile, z0, z1) => Solid::prism(&profile.region, *z0, *z1),
-            Recipe::Lathe(profile) => Solid::lathe(&profile.region),
             _ => unreachable!("only primitives are made above"),
         };
         Model {

@@ -23,7 +23,7 @@ impl std::fmt::Debug for Profile {
 }
 
 impl Profile {
-    fn new(outlines: &[(DVec2, Vec<(Edge, DVec2)>)]) -> Option<Self> {
+    fn new(outlines: &[(DVec2, Vec<(Edge, DVec2)>)], turned: bool) -> Option<Self> {
         let mut made = Vec::new();
         let mut pieces = Vec::new();
         let mut is_curved = false;
@@ -46,6 +46,11 @@ impl Profile {
             made.push(outline);
         }
         let region = Region::new(&made).ok()?;
+        let region = if turned {
+            region.right_half().ok()?
+        } else {
+            region
+        };
         Some(Self {
             region,
             outlines: outlines.to_vec(),
@@ -100,12 +105,13 @@ fn point_of(from: DVec2, edge: Edge, to: DVec2, u: f64) -> DVec2 {
 /// Multiples of 1/2, exact: an outline that crosses itself keeps slivers however thin, and what a
 /// ray meets in one thinner than the rounding of its origin is not decidable.
 fn corner(turned: bool) -> impl Strategy<Value = DVec2> {
-    let grid = || (-4i32..=4).prop_map(|i| f64::from(i) * 0.5);
-    (grid(), grid()).prop_map(move |(x, y)| DVec2::new(if turned { x.abs() } else { x }, y))
+    let grid = |low: i32| (low..=4).prop_map(|i| f64::from(i) * 0.5);
+    // What a lathe has at negative x is cut off.
+    (grid(if turned { -1 } else { -4 }), grid(-4)).prop_map(|(x, y)| DVec2::new(x, y))
 }
 
 /// One or two outlines of any kind of edges between points of a coarse grid, which may cross, touch
-/// and repeat points; for a lathe all on one side of the axis.
+/// and repeat points.
 pub(crate) fn profile(turned: bool) -> impl Strategy<Value = Profile> {
     let step = (corner(turned), corner(turned), corner(turned), 0..9_u32);
     let outline = (corner(turned), proptest::collection::vec(step, 2..7));
@@ -115,24 +121,24 @@ pub(crate) fn profile(turned: bool) -> impl Strategy<Value = Profile> {
             .map(|(start, steps)| {
                 let mut from = start;
                 let edges = steps.into_iter().map(|(to, c, d, kind)| {
-                    let edge = edge(from, to, c, d, kind, turned);
+                    let edge = edge(from, to, c, d, kind);
                     from = to;
                     (edge, to)
                 });
                 (start, edges.collect())
             })
             .collect();
-        Profile::new(&outlines)
+        Profile::new(&outlines, turned)
     })
 }
 
-fn edge(from: DVec2, to: DVec2, c: DVec2, d: DVec2, kind: u32, turned: bool) -> Edge {
+fn edge(from: DVec2, to: DVec2, c: DVec2, d: DVec2, kind: u32) -> Edge {
     let center = (from + to) * 0.5;
     match kind {
         0 => Edge::Quadratic(c),
         1 => Edge::Cubic(c, d),
-        // Half a circle, where it stays on its side of the axis.
-        2 | 3 if from != to && (!turned || center.distance(to) <= center.x) => Edge::Arc {
+        // Half a circle.
+        2 | 3 if from != to => Edge::Arc {
             center,
             clockwise: kind == 2,
         },

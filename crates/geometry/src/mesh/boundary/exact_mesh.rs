@@ -1,5 +1,7 @@
 //! Triangles with exact predicates: on which side is a point, and how often is it wound round?
 
+use std::cell::Cell;
+
 use octray_math::{Aabb, DVec3, Ray};
 use octray_tree::{WalkCost, WideTree, WideTreeConfig};
 use robust::{Coord, Coord3D};
@@ -19,7 +21,14 @@ pub(super) struct ExactMesh {
     tree: Option<WideTree>,
     /// The exponent of the factor.
     shift: i32,
+    /// Triangles that lines may still be tested against.
+    tests_left: Cell<u64>,
 }
+
+/// So many tests of lines against triangles are spent on one mesh, and this many more for every
+/// triangle.
+const TESTS: u64 = 5_000_000;
+const TESTS_PER_TRIANGLE: u64 = 300;
 
 const LARGEST_EXPONENT: i32 = 300;
 
@@ -61,7 +70,9 @@ impl ExactMesh {
         };
         // At most 2^30 bounded triangles: only beyond 2^28 there is no tree.
         let tree = WideTree::build(&bounds, &config).ok();
+        let tests = TESTS + TESTS_PER_TRIANGLE * triangles.len() as u64;
         Self {
+            tests_left: Cell::new(tests),
             positions,
             triangles,
             sources,
@@ -114,8 +125,18 @@ impl ExactMesh {
         }
     }
 
+    /// Whether so many lines have been tested that no more should be: the mesh is a tangle.
+    pub(super) fn is_exhausted(&self) -> bool {
+        self.tests_left.get() == 0
+    }
+
     /// Triangles whose boxes the line may meet.
     fn along(&self, ray: &Ray, mut visit: impl FnMut(u32)) {
+        let mut visit = |triangle: u32| {
+            let left = self.tests_left.get().saturating_sub(1);
+            self.tests_left.set(left);
+            visit(triangle);
+        };
         match &self.tree {
             Some(tree) => tree.all(
                 ray,

@@ -52,7 +52,7 @@ impl TriangleMesh {
         let edges = edges::check(self, &ids, &mut report);
         let exact = ExactMesh::new(self, &ids);
         let contacts = pairs::check(&exact, &mut report);
-        if report.is_closed() {
+        if report.is_closed() && report.count(FlawKind::Unchecked) == 0 {
             shells::check(&exact, &edges, &contacts, &mut report);
             let crossings = report.count(FlawKind::Crossing) + report.count(FlawKind::Overlap);
             if crossings > 0 && report.count(FlawKind::InsideOut) == 0 && self.is_inside_out() {

@@ -17,8 +17,10 @@ pub(super) struct Contacts {
 
 /// So many pairs are looked at, and this many more for every triangle: those of ordinary meshes
 /// are about ten per triangle.
-const PAIRS: u64 = 20_000_000;
-const PAIRS_PER_TRIANGLE: u64 = 100;
+const PAIRS: u64 = 2_000_000;
+const PAIRS_PER_TRIANGLE: u64 = 40;
+/// When so many crossings and overlaps have been found the search is over.
+const ENOUGH: usize = 10_000;
 
 /// Reports crossings, overlaps and folds.
 pub(super) fn check(mesh: &ExactMesh, report: &mut MeshReport) -> Contacts {
@@ -30,7 +32,8 @@ pub(super) fn check(mesh: &ExactMesh, report: &mut MeshReport) -> Contacts {
         others.clear();
         mesh.later_neighbours(triangle, |other| others.push(other));
         looked_at += others.len() as u64;
-        if looked_at > budget {
+        let found = report.count(FlawKind::Crossing) + report.count(FlawKind::Overlap);
+        if looked_at > budget || found > ENOUGH {
             report.add(Flaw {
                 kind: FlawKind::Unchecked,
                 places: vec![mesh.unscaled(mesh.corners(triangle)[0])],

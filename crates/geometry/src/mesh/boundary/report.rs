@@ -25,7 +25,7 @@ pub enum FlawKind {
     InsideOut,
     /// A shell within another that faces the same way.
     Nested,
-    /// So many triangles lie together that not all pairs were looked at.
+    /// So many triangles lie together that not all of them were looked at.
     Unchecked,
 }
 
@@ -150,7 +150,7 @@ impl fmt::Display for Flaw {
             ),
             FlawKind::Unchecked => write!(
                 f,
-                "so many triangles lie together, at {from} for one, that not all pairs were checked"
+                "so many triangles lie together, at {from} for one, that not all were checked"
             ),
         }
     }

@@ -13,7 +13,7 @@ use super::pairs::Contacts;
 use super::report::{Flaw, FlawKind, MeshReport};
 
 /// Contacts looked at for each triangle.
-const CONTACTS_PER_TRIANGLE: u8 = 3;
+const CONTACTS_PER_TRIANGLE: u8 = 2;
 /// Triangles tried until one tells which way a shell faces.
 const TRIALS: usize = 16;
 
@@ -61,7 +61,7 @@ pub(super) fn check(
     for &triangle in &contacts.crossed {
         shells[shell_of[triangle as usize] as usize].is_crossed = true;
     }
-    for shell in &mut shells {
+    for shell in shells.iter_mut().filter(|shell| !shell.is_crossed) {
         let mut fronts = shell
             .first
             .iter()
@@ -125,11 +125,10 @@ fn look_at_contacts(
             *times += 1;
             let middle = centroid(mesh, triangle);
             // A little way in from the contact.
-            for share in [0.0625, 1.0] {
-                if let Some(front) = front(mesh, triangle, place + (middle - place) * share) {
-                    shells[shell_of[triangle as usize] as usize].see(front);
-                    here = if here == 0 { front } else { here };
-                }
+            let beside = place + (middle - place) * 0.0625;
+            if let Some(front) = front(mesh, triangle, beside) {
+                shells[shell_of[triangle as usize] as usize].see(front);
+                here = if here == 0 { front } else { here };
             }
         }
         seen.push((index, here));
@@ -178,6 +177,9 @@ fn centroid(mesh: &ExactMesh, triangle: u32) -> DVec3 {
 /// The winding number in front of a triangle near a point of it, if it is one more behind (which it
 /// is not where another triangle lies upon it).
 fn front(mesh: &ExactMesh, triangle: u32, at: DVec3) -> Option<i64> {
+    if mesh.is_exhausted() {
+        return None;
+    }
     let [back, front] = mesh
         .beside(triangle, at)
         .map(|point| mesh.winding_number(point?));

@@ -9,7 +9,7 @@ mod rays;
 mod shapes;
 
 use octray_geometry::surface::SURFACE_TOLERANCE;
-use octray_geometry::{Solid, SolidNode};
+use octray_geometry::{Primitive, Solid, SolidNode};
 
 use crate::draw::Draw;
 use crate::model::{Model, Part};
@@ -107,9 +107,24 @@ pub(crate) fn scene(draw: &mut Draw) -> Model {
             solid,
         });
     }
+    // A polynomial may have a factor that is a plane: no table knows, and slivers are real.
+    let products = parts.iter().any(|part| has_polynomial(&part.solid));
     Model {
         parts,
-        delicate: lattice.nudge == Nudge::Tolerances,
+        delicate: products || lattice.nudge == Nudge::Tolerances,
+    }
+}
+
+fn has_polynomial(solid: &Solid) -> bool {
+    match solid.node() {
+        SolidNode::Primitive(primitive) => matches!(primitive, Primitive::Polynomial { .. }),
+        SolidNode::Empty => false,
+        SolidNode::Transformed { child, .. }
+        | SolidNode::WithMaterial { child, .. }
+        | SolidNode::Complement(child) => has_polynomial(child),
+        SolidNode::Union(all) | SolidNode::Intersection(all) | SolidNode::Difference(all) => {
+            all.iter().any(has_polynomial)
+        }
     }
 }
 

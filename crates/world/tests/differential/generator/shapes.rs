@@ -2,15 +2,16 @@
 
 use std::sync::Arc;
 
-use octray_geometry::{ConvexPolyhedron, Solid};
-use octray_math::DVec3;
+use octray_geometry::profile::{Outline, Region};
+use octray_geometry::{ConvexPolyhedron, Polynomial, ShapeError, Solid};
+use octray_math::{DVec2, DVec3};
 
 use super::Lattice;
 use crate::draw::Draw;
 
 /// A primitive in its own frame.
 pub(super) fn primitive(draw: &mut Draw, lattice: Lattice) -> Solid {
-    let kind = draw.weighted(&[4, 6, 4, 1, 4, 3, 2, 2]);
+    let kind = draw.weighted(&[8, 12, 8, 2, 8, 6, 4, 4, 3, 1, 2, 2, 2]);
     loop {
         let made = match kind {
             0 => Solid::sphere(lattice.length(draw)),
@@ -34,7 +35,20 @@ pub(super) fn primitive(draw: &mut Draw, lattice: Lattice) -> Solid {
                 let normal = direction(draw);
                 Solid::half_space(normal, lattice.coordinate(draw))
             }
-            _ => convex(draw, lattice),
+            7 => convex(draw, lattice),
+            8 => quadric(draw),
+            9 => quartic(draw),
+            11 => {
+                let (region, z) = (region(draw, lattice, true), lattice.coordinate(draw));
+                let scale = draw.pick(&[[1.0, 1.0], [1.0, 0.5], [0.0, 1.0]]);
+                let z = [z, z + lattice.length(draw)];
+                region.and_then(|region| Solid::tapered_prism(&region, z, scale))
+            }
+            12 => region(draw, lattice, false).and_then(|region| Solid::lathe(&region)),
+            _ => {
+                let exponents = [0.1, 0.5, 0.8, 1.0, 1.5, 2.0];
+                Solid::superellipsoid(draw.pick(&exponents), draw.pick(&exponents))
+            }
         };
         // Nudged numbers may leave an edge without length: then once more.
         if let Ok(solid) = made {
@@ -63,7 +77,7 @@ fn direction(draw: &mut Draw) -> DVec3 {
 
 /// Mostly parts of a few cones, so that mantles coincide: radius `k step` at height 0, changing by
 /// `slope` per height, cut at heights of the lattice.
-fn cone(draw: &mut Draw, lattice: Lattice) -> Result<Solid, octray_geometry::ShapeError> {
+fn cone(draw: &mut Draw, lattice: Lattice) -> Result<Solid, ShapeError> {
     if draw.chance(0.3) {
         let z = lattice.coordinate(draw);
         let ends = [lattice.length(draw), lattice.length(draw)];
@@ -81,7 +95,7 @@ fn cone(draw: &mut Draw, lattice: Lattice) -> Result<Solid, octray_geometry::Sha
 }
 
 /// A prism or pyramid over a polygon of the lattice.
-fn convex(draw: &mut Draw, lattice: Lattice) -> Result<Solid, octray_geometry::ShapeError> {
+fn convex(draw: &mut Draw, lattice: Lattice) -> Result<Solid, ShapeError> {
     let step = lattice.step;
     let outline: &[[f64; 2]] = draw.pick(&[
         &[[0.0, 0.0], [2.0, 0.0], [0.0, 2.0]][..],
@@ -104,4 +118,64 @@ fn convex(draw: &mut Draw, lattice: Lattice) -> Result<Solid, octray_geometry::S
     }
     let polyhedron = ConvexPolyhedron::from_faces(vertices, &faces)?;
     Ok(Solid::convex(Arc::new(polyhedron)))
+}
+
+/// Any quadric with small coefficients, most of them 0.
+fn quadric(draw: &mut Draw) -> Result<Solid, ShapeError> {
+    let coefficients = std::array::from_fn(|i| {
+        let often = if i < 3 { 0.8 } else { 0.2 };
+        if draw.chance(often) {
+            0.5 * f64::from(draw.whole(-2, 2))
+        } else {
+            0.0
+        }
+    });
+    Solid::quadric(coefficients)
+}
+
+/// A cubic or quartic with small coefficients, most of them 0.
+fn quartic(draw: &mut Draw) -> Result<Solid, ShapeError> {
+    let (degree, count) = draw.pick(&[(3, 20), (4, 35), (4, 35)]);
+    let coefficients: Vec<f64> = (0..count)
+        .map(|_| match draw.weighted(&[4, 1]) {
+            0 => 0.0,
+            _ => f64::from(draw.whole(-2, 2)),
+        })
+        .collect();
+    Solid::polynomial(Polynomial::new(degree, &coefficients)?)
+}
+
+/// A concave polygon of the lattice, or a square with a square or a round hole; right of the axis
+/// unless it may be anywhere. Outlines do not cross: those become one surface of degree n.
+fn region(draw: &mut Draw, lattice: Lattice, anywhere: bool) -> Result<Region, ShapeError> {
+    let corners: &[[f64; 2]] = draw.pick(&[
+        &[
+            [0.0, 0.0],
+            [3.0, 0.0],
+            [3.0, 1.0],
+            [1.0, 1.0],
+            [1.0, 3.0],
+            [0.0, 3.0],
+        ][..],
+        &[[0.0, 0.0], [3.0, 0.0], [3.0, 3.0], [2.0, 1.0]][..],
+        &[[0.0, 0.0], [1.0, 1.0], [2.0, 0.0], [3.0, 2.0], [0.0, 3.0]][..],
+        &[[0.0, 0.0], [3.0, 0.0], [3.0, 3.0], [0.0, 3.0]][..],
+    ]);
+    let shift = |draw: &mut Draw| lattice.step * f64::from(draw.whole(0, 3));
+    let mut at = DVec2::new(shift(draw), shift(draw));
+    if anywhere {
+        at -= DVec2::splat(2.0 * lattice.step);
+    }
+    let place = |p: &[f64; 2]| at + DVec2::from_array(*p) * lattice.step;
+    let outline: Vec<DVec2> = corners.iter().map(place).collect();
+    let mut outlines = vec![Outline::polygon(&outline)];
+    if corners[1..] == [[3.0, 0.0], [3.0, 3.0], [0.0, 3.0]] {
+        if draw.chance(0.5) {
+            outlines.push(Outline::circle(place(&[1.5, 2.0]), 0.5 * lattice.step));
+        } else {
+            let hole = [[0.5, 0.5], [2.5, 1.0], [2.0, 2.5], [1.0, 1.0]];
+            outlines.push(Outline::polygon(&hole.map(|p| place(&p))));
+        }
+    }
+    Region::new(&outlines)
 }

@@ -6,6 +6,7 @@
 use octray_geometry::Primitive;
 use octray_math::DVec3;
 
+use super::implicit;
 use super::number::Number;
 
 /// The clearance of a point from a primitive.
@@ -60,8 +61,33 @@ pub(crate) fn clearance<N: Number>(primitive: &Primitive, [x, y, z]: [N; 3]) -> 
             .map(|(normal, offset)| plane(normal.to_array(), *offset))
             .reduce(Number::largest)
             .expect("a polyhedron has faces"),
-        other => panic!("no definition of {other:?}"),
+        Primitive::Superellipsoid { exponents } => {
+            N::of(superellipsoid(*exponents, [x, y, z].map(Number::rounded)))
+        }
+        other => match implicit::terms(other) {
+            Some(terms) => implicit::clearance(&terms, [x, y, z]),
+            None => panic!("no definition of {other:?}"),
+        },
     }
+}
+
+/// `(|x|^(2/e) + |y|^(2/e))^(e/n) + |z|^(2/n)` to the power of `n/2` is a norm for exponents up to
+/// 2, at most twice the length, and the solid is its unit ball.
+fn superellipsoid([e, n]: [f64; 2], q: [f64; 3]) -> f64 {
+    assert!(e <= 2.0 && n <= 2.0, "not a norm: {e} {n}");
+    // Of numbers as large as their maximum, so that no power overflows.
+    let norm = |a: f64, b: f64, exponent: f64| {
+        let largest = a.max(b);
+        if largest == 0.0 {
+            return 0.0;
+        }
+        let sum = libm::pow(a / largest, 2.0 / exponent) + libm::pow(b / largest, 2.0 / exponent);
+        largest * libm::pow(sum, 0.5 * exponent)
+    };
+    let [x, y, z] = q.map(f64::abs);
+    let excess = norm(norm(x, y, e), z, n) - 1.0;
+    let rounding = 32.0 * f64::EPSILON * (1.0 + excess.abs());
+    0.5 * (excess.abs() - rounding).max(0.0).copysign(excess)
 }
 
 /// The largest length among a primitive's parameters: what its rounding errors are measured by.
@@ -81,6 +107,8 @@ pub(crate) fn extent(primitive: &Primitive) -> f64 {
             .vertices
             .iter()
             .fold(0.0, |size, v| v.abs().max_element().max(size)),
+        Primitive::Quadric(_) | Primitive::Superellipsoid { .. } => 1.0,
+        Primitive::Polynomial { .. } => 1.0,
         other => panic!("no definition of {other:?}"),
     }
 }

@@ -10,6 +10,8 @@ use num_bigint::{BigInt, Sign};
 use octray_geometry::Primitive;
 use octray_math::{DAffine3, DVec3, Ray};
 
+use super::implicit;
+
 /// `mantissa * 2^exponent`.
 #[derive(Clone, Debug)]
 pub(crate) struct Dyadic {
@@ -222,6 +224,25 @@ pub(crate) fn side(primitive: &Primitive, frame: &ExactFrame, point: &[Dyadic; 3
             .map(|(normal, offset)| plane(*normal, *offset))
             .max()
             .expect("a polyhedron has faces"),
-        other => panic!("no definition of {other:?}"),
+        // Its powers are no numbers of this kind.
+        Primitive::Superellipsoid { .. } => Ordering::Equal,
+        other => match implicit::terms(other) {
+            Some(terms) => polynomial(&terms, &q, &w),
+            None => panic!("no definition of {other:?}"),
+        },
     }
+}
+
+/// The sign of a polynomial at `q / w`.
+fn polynomial(terms: &[implicit::Term], q: &Vector, w: &Dyadic) -> Ordering {
+    let degree = |powers: &[usize; 3]| powers.iter().sum::<usize>();
+    let most = terms.iter().map(|(_, p)| degree(p)).max().unwrap_or(0);
+    let power = |x: &Dyadic, n: usize| (0..n).fold(Dyadic::of(1.0), |product, _| &product * x);
+    let mut sum = Dyadic::of(0.0);
+    for (c, powers) in terms {
+        let factors = (0..3).map(|axis| power(&q[axis], powers[axis]));
+        let product = factors.fold(Dyadic::of(*c), |product, factor| &product * &factor);
+        sum = &sum + &(&product * &power(w, most - degree(powers)));
+    }
+    sum.sign()
 }

@@ -81,11 +81,12 @@ impl Frame {
         self.local_vector(away)
     }
 
-    /// The unit normal in the world of a plane in this frame.
+    /// The normal in the world of a plane in this frame; its length is heights in this frame per
+    /// length in the world.
     pub(crate) fn world_normal(&self, normal: DVec3) -> DVec3 {
         let rows = self.local_from_world.map(|row| row.map(Number::rounded));
         let [x, y, z] = rows.map(DVec3::from_array);
-        (x * normal.x + y * normal.y + z * normal.z).normalize()
+        x * normal.x + y * normal.y + z * normal.z
     }
 
     /// A direction of the world in this frame.

@@ -1,5 +1,6 @@
 //! A ray as the primitives see it, and how near to a boundary is too near to tell.
 
+use octray_geometry::surface::SURFACE_TOLERANCE;
 use octray_math::{DVec3, Ray};
 
 use super::clearance::{clearance, faces};
@@ -121,12 +122,15 @@ impl<'a> Sight<'a> {
     }
 
     /// The normal of the flat faces that are too near to tell their sides at `t`, if there are any,
-    /// all lie in one plane, and nothing else is nearer than `room`.
+    /// all are one plane but for rounding, and nothing else is nearer than `room`.
     pub(crate) fn shared_normal(&self, t: f64, room: f64) -> Option<DVec3> {
         let (far, uncertainty) = (self.far(t), self.uncertainty(t));
-        let mut shared: Option<DVec3> = None;
-        for (leaf, line) in self.oracle.leaves.iter().zip(&self.lines) {
-            let q = line.origin + line.direction * (t - self.shift);
+        let point = point_at(&self.ray, t);
+        let same = self.oracle.scene.size * SURFACE_TOLERANCE / 16.0;
+        let mut shared: Option<(DVec3, f64)> = None;
+        for leaf in &self.oracle.leaves {
+            let fine = leaf.frame.local(point);
+            let q = DVec3::from_array(fine.map(Number::rounded));
             let near = 2.0 * self.margin(leaf, q, far, uncertainty);
             let clear = near.max(room * leaf.frame.shrink);
             let (flat, curved) = faces(&leaf.primitive, q);
@@ -134,18 +138,24 @@ impl<'a> Sight<'a> {
                 return None;
             }
             for (normal, offset) in flat {
-                let height = (normal.dot(q) - offset).abs();
-                if height > clear {
+                let [x, y, z] = normal.to_array().map(Twofold::of);
+                let height = x * fine[0] + y * fine[1] + z * fine[2] - Twofold::of(offset);
+                let height = height.rounded();
+                if height.abs() > clear {
                     continue;
                 }
                 let normal = leaf.frame.world_normal(normal);
-                let first = *shared.get_or_insert(normal);
-                if height > near || first.cross(normal).length() > 1e-9 {
+                let height_in_world = height / normal.length();
+                let normal = normal.normalize();
+                let (first, at) = *shared.get_or_insert((normal, height_in_world));
+                let apart = height_in_world * normal.dot(first).signum() - at;
+                if height.abs() > near || first.cross(normal).length() > 1e-9 || apart.abs() > same
+                {
                     return None;
                 }
             }
         }
-        shared
+        shared.map(|(normal, _)| normal)
     }
 }
 
