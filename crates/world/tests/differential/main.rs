@@ -18,6 +18,7 @@ mod model;
 mod oracle;
 mod shrink;
 mod text;
+mod walls;
 
 use campaign::Campaign;
 use check::{Tally, check};

@@ -87,15 +87,7 @@ fn steps(terms: &[Term], at: [f64; 3]) -> Vec<f64> {
                 let c = expanded[(i * side + j) * side + k];
                 match i + j + k {
                     0 => {}
-                    1 => {
-                        gradient[if i == 1 {
-                            0
-                        } else if j == 1 {
-                            1
-                        } else {
-                            2
-                        }] = c
-                    }
+                    1 => gradient[j + 2 * k] = c,
                     n => sums[n] += c.abs(),
                 }
             }
@@ -124,7 +116,7 @@ fn distance(steps: &[f64], change: f64) -> f64 {
             sum = (sum + step) * m;
         }
         let next = m - (sum - change) / slope;
-        if !(next < m * (1.0 - 1e-12)) {
+        if next.is_nan() || next >= m * (1.0 - 1e-12) {
             break;
         }
         m = next;
@@ -141,7 +133,7 @@ mod tests {
         let terms = terms(&Primitive::Quadric(QuadricForm::OneSheet)).expect("a quadric");
         // From the axis the waist is 1 away.
         let from_axis = clearance(&terms, [0.0, 0.0, 0.0]);
-        assert!(from_axis < -0.5 && from_axis >= -1.0, "{from_axis}");
+        assert!((-1.0..-0.5).contains(&from_axis), "{from_axis}");
         let beyond = clearance(&terms, [3.0, 0.0, 0.0]);
         assert!(beyond > 0.8 && beyond < 2.0, "{beyond}");
         assert_eq!(clearance(&terms, [1.0, 0.0, 0.0]), 0.0);
