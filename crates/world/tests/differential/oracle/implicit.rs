@@ -41,14 +41,20 @@ pub(super) fn terms(primitive: &Primitive) -> Option<Vec<Term>> {
     }
 }
 
-/// A distance within which the polynomial keeps its sign, with that sign.
-pub(super) fn clearance<N: Number>(terms: &[Term], q: [N; 3]) -> N {
+/// The value of the polynomial.
+pub(super) fn value<N: Number>(terms: &[Term], q: [N; 3]) -> N {
     let power = |x: N, n: usize| (0..n).fold(N::of(1.0), |product, _| product * x);
     let mut value = N::of(0.0);
     for (c, powers) in terms {
         let product = (0..3).fold(N::of(*c), |p, axis| p * power(q[axis], powers[axis]));
         value = value + product;
     }
+    value
+}
+
+/// A distance within which the polynomial keeps its sign, with that sign.
+pub(super) fn clearance<N: Number>(terms: &[Term], q: [N; 3]) -> N {
+    let value = value(terms, q);
     let at = q.map(Number::rounded);
     let reach = at.iter().fold(1.0_f64, |size, x| size.max(x.abs()));
     let degree = |powers: &[usize; 3]| powers.iter().sum::<usize>() as i32;

@@ -21,8 +21,11 @@ use octray_geometry::{Primitive, SceneFrame, finite_box};
 use octray_math::{Aabb, DAffine3, DVec3, Ray};
 use octray_scene::{Scene, Shape};
 
+use clearance::clearance;
 use exact::ExactFrame;
 use frame::Frame;
+use implicit::Term;
+use number::Number;
 use plant::plant;
 
 pub(crate) use sight::Sight;
@@ -37,6 +40,18 @@ struct Leaf {
     chain: Vec<DAffine3>,
     frame: Frame,
     extent: f64,
+    /// Of a primitive that a polynomial defines.
+    terms: Option<Vec<Term>>,
+}
+
+impl Leaf {
+    /// See [`clearance`].
+    fn clearance<N: Number>(&self, q: [N; 3]) -> N {
+        match &self.terms {
+            Some(terms) => implicit::clearance(terms, q),
+            None => clearance(&self.primitive, q),
+        }
+    }
 }
 
 #[derive(Debug)]

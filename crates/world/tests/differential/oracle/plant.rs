@@ -9,6 +9,7 @@ use octray_math::{Aabb, DAffine3};
 
 use super::clearance::extent;
 use super::frame::Frame;
+use super::implicit;
 use super::{Leaf, Node};
 
 /// Puts a solid's primitives among the leaves, each with the transforms above it.
@@ -53,6 +54,7 @@ fn plant_leaf(primitive: &Primitive, chain: &[DAffine3], leaves: &mut Vec<Leaf>)
         chain: chain.to_vec(),
         frame: Frame::new(chain),
         extent: extent(primitive),
+        terms: implicit::terms(primitive),
     });
     leaves.len() - 1
 }
