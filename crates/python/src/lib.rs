@@ -16,6 +16,7 @@ mod material;
 mod mesh;
 mod objects;
 mod pool;
+mod profile;
 mod queries;
 mod render;
 mod report;

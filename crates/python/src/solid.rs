@@ -365,8 +365,14 @@ pub(crate) fn polyhedron(
             convex,
         ))));
     }
-    let mesh = mesh::triangulated(vertices, &faces)?;
-    checked(octray::geometry::Solid::mesh(mesh, rule))
+    let mesh = mesh::triangulated(vertices.clone(), &faces)?;
+    let solid = octray::geometry::Solid::mesh(mesh, rule).map_err(value_error)?;
+    // What may be a solid at all has exact planes, where it is not too large for that.
+    let exact = octray::geometry::Solid::exact_polyhedron(&vertices, &faces);
+    Ok(Solid::leaf(match exact {
+        Ok(exact) if rule == MeshRule::Strict => exact,
+        _ => solid,
+    }))
 }
 
 /// The inside of a closed triangle mesh whose triangles run counter-clockwise seen from outside.
