@@ -42,8 +42,8 @@ __all__ = [
     "load",
     "mesh_solid",
     "polyhedron",
-    "prism",
     "polynomial",
+    "prism",
     "quadric",
     "quartic",
     "sphere",
@@ -113,7 +113,7 @@ _Pair: TypeAlias = tuple[float, float]
 
 @final
 class Outline:
-    def __new__(cls, x: float, y: float) -> Self: ...
+    def __new__(cls, x: float, y: float) -> Outline: ...
     @staticmethod
     def circle(r: float, center: _Pair = (0.0, 0.0)) -> Outline: ...
     def line_to(self, x: float, y: float) -> Outline: ...
