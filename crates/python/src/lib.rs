@@ -59,6 +59,8 @@ mod _core {
 
     #[pymodule_export]
     use super::system::{cpu_features, default_threads};
+    #[pymodule_export]
+    use super::world::{method_name, methods};
 
     use pyo3::prelude::*;
 
