@@ -20,6 +20,7 @@ __all__ = [
     "Intersections",
     "Light",
     "Material",
+    "Outline",
     "PointLight",
     "Scene",
     "SceneError",
@@ -37,10 +38,12 @@ __all__ = [
     "empty",
     "half_space",
     "intersection",
+    "lathe",
     "load",
     "mesh_solid",
     "polyhedron",
     "polynomial",
+    "prism",
     "quadric",
     "quartic",
     "sphere",
@@ -106,6 +109,22 @@ class Solid:
     @property
     def bounds(self) -> _Bounds | None: ...
 
+_Pair: TypeAlias = tuple[float, float]
+
+@final
+class Outline:
+    def __new__(cls, x: float, y: float) -> Outline: ...
+    @staticmethod
+    def circle(r: float, center: _Pair = (0.0, 0.0)) -> Outline: ...
+    def line_to(self, x: float, y: float) -> Outline: ...
+    def quadratic_to(self, control: _Pair, x: float, y: float) -> Outline: ...
+    def cubic_to(self, control1: _Pair, control2: _Pair, x: float, y: float) -> Outline: ...
+    def arc_to(self, x: float, y: float, center: _Pair, clockwise: bool = False) -> Outline: ...
+
+_Profile: TypeAlias = Outline | npt.ArrayLike | Sequence[Outline | npt.ArrayLike]
+
+def prism(profile: _Profile, h: float, center: bool = True, scale: float = 1.0) -> Solid: ...
+def lathe(profile: _Profile, angle: float = 360.0) -> Solid: ...
 def box(size: float | _Vector, center: bool = True) -> Solid: ...
 def sphere(r: float) -> Solid: ...
 def cylinder(r: float, h: float, center: bool = True) -> Solid: ...

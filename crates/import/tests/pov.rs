@@ -563,6 +563,31 @@ fn nothing_goes_on_for_ever_or_too_deep() {
 }
 
 #[test]
+fn prisms_and_lathes_of_curves_are_solids() {
+    // A circle of radius 1 by four Bezier pieces, as prism and cone.
+    let k = 0.552_284_75;
+    let circle = format!(
+        "16, <1, 0>, <1, {k}>, <{k}, 1>, <0, 1>, <0, 1>, <-{k}, 1>, <-1, {k}>, <-1, 0>, \
+         <-1, 0>, <-1, -{k}>, <-{k}, -1>, <0, -1>, <0, -1>, <{k}, -1>, <1, -{k}>, <1, 0>"
+    );
+    let prism = bounds(&format!("prism {{ bezier_spline 1, 3, {circle} }}"));
+    assert_close(prism, [-1.0, 1.0, -1.0], [1.0, 3.0, 1.0]);
+    let square = "5, <-1, -1>, <1, -1>, <1, 1>, <-1, 1>, <-1, -1>";
+    let twice = bounds(&format!("prism {{ conic_sweep -1, 2, {square} }}"));
+    assert_close(twice, [-2.0, -1.0, -2.0], [2.0, 2.0, 2.0]);
+    // A control point, then from the axis out and back to it.
+    let turned = bounds("lathe { quadratic_spline 4, <0, -1>, <0, 0>, <2, 1>, <0, 2> }");
+    assert!(turned.contains(DVec3::new(2.0, 1.0, 0.0)) && turned.min.y <= 0.0);
+    // Not closed: a surface without inside, which is no operand.
+    let vase = "lathe { cubic_spline 6, <1, -1>, <1, 0>, <2, 1>, <1, 2>, <2, 3>, <2, 4> }";
+    let imported = import(vase);
+    let scene = imported.scene.expect("a scene");
+    let is_sheet =
+        |object: &octray_scene::Object| matches!(object.shape, octray_scene::Shape::Sheet(_));
+    assert!(!scene.objects().is_empty() && scene.objects().iter().all(is_sheet));
+}
+
+#[test]
 fn numbers_out_of_all_bounds_are_no_crash() {
     for text in [
         "sphere { <1e308, 1e308, 1e308>*10, 1 }",
@@ -573,6 +598,8 @@ fn numbers_out_of_all_bounds_are_no_crash() {
         "plane { 0, 1 }",
         "disc { 0, 0, 1 }",
         "prism { 0, 0, 3, <0, 0>, <1, 1>, <0, 0> }",
+        "prism { bezier_spline 0, 1e300, 4, <0, 0>, <1e200, 1>, <1, 1e308>, <0, 0> }",
+        "lathe { cubic_spline 5, <0, 0>, <1e308, 0>, <-1e308, 1>, <0, 1e-300>, <0, 0> }",
         "camera { angle 0 }",
         "camera { right 0 }",
         "camera { location 0 look_at 0 }",

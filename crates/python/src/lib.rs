@@ -16,6 +16,7 @@ mod material;
 mod mesh;
 mod objects;
 mod pool;
+mod profile;
 mod queries;
 mod render;
 mod report;
@@ -42,6 +43,8 @@ mod _core {
     use super::load::load;
     #[pymodule_export]
     use super::material::Material;
+    #[pymodule_export]
+    use super::profile::{Outline, lathe, prism};
     #[pymodule_export]
     use super::queries::{Hits, Intersections};
     #[pymodule_export]

@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use octray::geometry::mesh::MeshRule;
 use octray::geometry::{ConvexPolyhedron, ShapeError, SolidNode, TriangleMesh};
 use octray::math::{DAffine3, DVec3, transform};
 use pyo3::exceptions::{PyTypeError, PyValueError};
@@ -365,8 +366,14 @@ pub(crate) fn polyhedron(
             convex,
         ))));
     }
-    let mesh = mesh::triangulated(vertices, &faces)?;
-    checked(octray::geometry::Solid::mesh(mesh, rule))
+    let mesh = mesh::triangulated(vertices.clone(), &faces)?;
+    let solid = octray::geometry::Solid::mesh(mesh, rule).map_err(value_error)?;
+    // What may be a solid at all has exact planes, where it is not too large for that.
+    let exact = octray::geometry::Solid::exact_polyhedron(&vertices, &faces);
+    Ok(Solid::leaf(match exact {
+        Ok(exact) if rule == MeshRule::Strict => exact,
+        _ => solid,
+    }))
 }
 
 /// The inside of a closed triangle mesh whose triangles run counter-clockwise seen from outside.

@@ -11,12 +11,14 @@ mod loops;
 mod pieces;
 mod prism;
 mod region;
+mod shells;
 
 pub use contour::Contour;
 pub(crate) use contour::changes;
 pub use curve::Curve;
 pub use formula::{Formula, MAX_FORMULA_DEPTH};
 pub use region::{Edge, MAX_EDGES, Outline, Region};
+pub use shells::turned_shells;
 
 pub use lathe::Turning;
 pub(crate) use lathe::lathe;

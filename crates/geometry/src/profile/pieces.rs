@@ -12,6 +12,9 @@ use crate::ShapeError;
 /// 2^-24 of the curve long and flatter than rounding.
 const MAX_HALVINGS: u32 = 24;
 
+/// Coordinates beyond this would leave the range when multiplied.
+const LARGEST: f64 = 1e100;
+
 /// A part of an edge.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Piece {
@@ -82,13 +85,14 @@ pub(super) fn append(
 ) -> Result<(), ShapeError> {
     // -0 and 0 are one coordinate.
     let clean = |p: DVec2| -> Result<DVec2, ShapeError> {
-        if p.is_finite() {
-            Ok(p + DVec2::ZERO)
-        } else {
-            Err(ShapeError::BadProfile(
-                "has a coordinate that is not finite",
-            ))
+        if !p.is_finite() {
+            let message = "has a coordinate that is not finite";
+            return Err(ShapeError::BadProfile(message));
         }
+        if p.abs().max_element() > LARGEST {
+            return Err(ShapeError::BadProfile("is too large"));
+        }
+        Ok(p + DVec2::ZERO)
     };
     let (from, to) = (clean(from)?, clean(to)?);
     match edge {
@@ -175,8 +179,13 @@ fn push_line(a: DVec2, b: DVec2, pieces: &mut Vec<Piece>) {
 fn append_bezier(curve: &Curve, halvings: u32, pieces: &mut Vec<Piece>) {
     let control: Vec<DVec2> = curve.control().collect();
     let (a, b) = (curve.start(), curve.end());
+    // What rounding bends is straight: halved, it would be bent both ways for ever.
+    let size = control
+        .iter()
+        .fold(0.0_f64, |m, p| m.max(p.abs().max_element()));
+    let rounding = 8.0 * f64::EPSILON * size * a.distance(b);
     let straight = a != b
-        && control.iter().all(|&p| turn(a, b, p) == 0.0)
+        && control.iter().all(|&p| turn(a, b, p).abs() <= rounding)
         && control.windows(2).all(|w| (w[1] - w[0]).dot(b - a) >= 0.0);
     if straight || halvings == MAX_HALVINGS {
         push_line(a, b, pieces);

@@ -8,6 +8,9 @@ use crate::ShapeError;
 /// The most edges a region may have.
 pub const MAX_EDGES: usize = 1 << 20;
 
+/// Products of smaller sizes would leave the range.
+const SMALLEST: f64 = 1e-100;
+
 /// How an outline goes on to its next point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Edge {
@@ -123,8 +126,12 @@ impl Region {
         if !(bounds[1] - bounds[0]).is_finite() {
             return Err(ShapeError::BadProfile("is too large"));
         }
-        if (bounds[1] - bounds[0]).min_element() <= 0.0 {
+        let size = bounds[1] - bounds[0];
+        if size.min_element() <= 0.0 {
             return Err(ShapeError::BadProfile("has no area"));
+        }
+        if size.max_element() < SMALLEST {
+            return Err(ShapeError::BadProfile("is too small"));
         }
         Ok(Self { pieces, bounds })
     }
@@ -181,5 +188,61 @@ impl Region {
     #[must_use]
     pub const fn bounds(&self) -> [DVec2; 2] {
         self.bounds
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Solid;
+    use proptest::prelude::*;
+
+    fn odd_number() -> impl Strategy<Value = f64> {
+        prop_oneof![
+            4 => (-3..=3_i32).prop_map(f64::from),
+            1 => prop_oneof![Just(-0.0), Just(1e-17), Just(1e-300), Just(0.1), Just(0.3)],
+            1 => (-4..=4_i32).prop_map(|ulps| 1.0 + f64::from(ulps) * f64::EPSILON),
+            1 => prop_oneof![Just(1e99), Just(1e101), Just(f64::NAN), Just(f64::INFINITY)],
+        ]
+    }
+
+    fn point() -> impl Strategy<Value = DVec2> {
+        (odd_number(), odd_number()).prop_map(|(x, y)| DVec2::new(x, y))
+    }
+
+    fn outline() -> impl Strategy<Value = Outline> {
+        let step = (0..5_u32, point(), point(), point());
+        (point(), proptest::collection::vec(step, 0..8)).prop_map(|(start, steps)| {
+            let mut outline = Outline::starting_at(start);
+            for (kind, a, b, to) in steps {
+                let edge = match kind {
+                    0 => Edge::Quadratic(a),
+                    1 => Edge::Cubic(a, b),
+                    2 => Edge::Arc {
+                        center: a,
+                        clockwise: b.x > 0.0,
+                    },
+                    _ => Edge::Line,
+                };
+                outline.push(edge, to);
+            }
+            outline
+        })
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(3000))]
+        #[test]
+        fn any_outline_is_refused_or_made_with_few_pieces(
+            outlines in proptest::collection::vec(outline(), 0..3),
+        ) {
+            if let Ok(region) = Region::new(&outlines) {
+                prop_assert!(region.pieces.len() < 2000, "{}", region.pieces.len());
+                let made = [Solid::prism(&region, 0.0, 1.0), Solid::lathe(&region)];
+                for solid in made.into_iter().flatten() {
+                    prop_assert!(solid.bounds().is_bounded());
+                }
+            }
+        }
     }
 }

@@ -37,6 +37,7 @@ mod profile;
 mod reader;
 mod scene;
 mod scope;
+mod splines;
 mod standard;
 mod strings;
 mod swept;

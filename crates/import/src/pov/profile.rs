@@ -1,8 +1,11 @@
-//! Plane figures cut into trapezoids: what `polygon`, `prism` and `lathe` are made of.
+//! Plane figures cut into trapezoids: what `polygon` is made of.
 
 use std::cmp::Ordering;
 
 use octray_math::DVec2;
+
+/// Points of an outline this near to its first one close it.
+pub(super) const CLOSED: f64 = 1e-9;
 
 /// A piece of a figure between two heights: `left` and `right` at the lower one, then at the
 /// upper one.
@@ -22,7 +25,7 @@ pub(super) fn outlines(points: &[DVec2]) -> Option<Vec<&[DVec2]>> {
     while start < points.len() {
         let length = points[start + 1..]
             .iter()
-            .position(|p| (*p - points[start]).length() < 1e-9)?;
+            .position(|p| (*p - points[start]).length() < CLOSED)?;
         // The closing point repeats the first one and is dropped.
         all.push(&points[start..=start + length]);
         start += length + 2;

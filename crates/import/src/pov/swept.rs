@@ -2,13 +2,15 @@
 
 use std::sync::Arc;
 
-use octray_geometry::{ConvexPolyhedron, ShapeError, Sheet, Solid, TriangleMesh};
-use octray_math::{DAffine3, DVec2, DVec3};
+use octray_geometry::profile::{self, Edge, Outline, Region};
+use octray_geometry::{ShapeError, Sheet, Solid, TriangleMesh};
+use octray_math::{DAffine3, DMat3, DVec2, DVec3};
 
 use super::object::{Geometry, MeshDef};
 use super::primitives::conical;
-use super::profile::{self, Trapezoid};
+use super::profile::{CLOSED, Trapezoid, outlines, trapezoids};
 use super::reader::{Parsed, Reader};
+use super::splines::Spline;
 use crate::Span;
 
 /// How many pieces a figure may be cut into.
@@ -39,11 +41,11 @@ impl Reader<'_> {
     }
 
     fn cut(&mut self, points: &[DVec2], span: Span) -> Parsed<Vec<Trapezoid>> {
-        let Some(outlines) = profile::outlines(points) else {
+        let Some(outlines) = outlines(points) else {
             let message = "an outline is not closed: its last point must repeat its first";
             return self.fail(span, message);
         };
-        match profile::trapezoids(&outlines, MAX_PIECES) {
+        match trapezoids(&outlines, MAX_PIECES) {
             Some(pieces) => {
                 self.book(400 * pieces.len() as u64)?;
                 Ok(pieces)
@@ -102,16 +104,15 @@ impl Reader<'_> {
         }
     }
 
-    /// `[linear_spline] [linear_sweep] height, height, count, <x, z>, ...`.
+    /// `[SPLINE] [SWEEP] height, height, count, <x, z>, ...`.
     pub(super) fn prism(&mut self, span: Span) -> Parsed<Option<Geometry>> {
         let mut conic = false;
+        let mut spline = Spline::Linear;
         while let Some(word) = self.peek_word() {
-            match &*word {
-                "linear_spline" | "linear_sweep" => {}
-                "conic_sweep" => conic = true,
-                "quadratic_spline" | "cubic_spline" | "bezier_spline" => {
-                    return self.curved("prism");
-                }
+            match (&*word, Spline::called(&word)) {
+                (_, Some(called)) => spline = called,
+                ("linear_sweep", _) => conic = false,
+                ("conic_sweep", _) => conic = true,
                 _ => break,
             }
             self.next();
@@ -122,90 +123,75 @@ impl Reader<'_> {
         self.comma();
         let count = self.point_count()?;
         let points = self.plane_points(count)?;
-        let pieces = self.cut(&points, span)?;
         self.eat_word("open");
+        let Some(outlines) = spline.outlines(&points) else {
+            return self.fail(span, spline.complaint());
+        };
+        self.book(400 * points.len() as u64)?;
         let heights = [a.min(b), a.max(b)];
-        let solids = pieces
-            .iter()
-            .flat_map(|piece| prism_piece(piece, heights, conic));
-        Ok(self.joined("prism", span, solids))
+        let made = Region::new(&outlines).and_then(|region| swept(&region, heights, conic));
+        Ok(self.usable("prism", span, made.map(Geometry::Solid)))
     }
 
-    /// `[linear_spline] count, <x, y>, ...`: turned about the y axis.
+    /// `[SPLINE] count, <x, y>, ...`: turned about the y axis.
     pub(super) fn lathe(&mut self, span: Span) -> Parsed<Option<Geometry>> {
+        let mut spline = Spline::Linear;
         while let Some(word) = self.peek_word() {
-            match &*word {
-                "linear_spline" => {
-                    self.next();
-                }
-                "quadratic_spline" | "cubic_spline" | "bezier_spline" => {
-                    return self.curved("lathe");
-                }
-                _ => break,
-            }
+            let Some(called) = Spline::called(&word) else {
+                break;
+            };
+            spline = called;
+            self.next();
         }
         let count = self.point_count()?;
         let mut points = self.plane_points(count)?;
-        let (Some(&first), Some(&last)) = (points.first(), points.last()) else {
-            return Ok(None);
+        // Distances from the axis; POV-Ray too turns the other side.
+        points.iter_mut().for_each(|p| p.x = p.x.abs());
+        let Some((start, edges)) = spline.curve(&points) else {
+            return self.fail(span, "there are too few points for this spline");
         };
-        if first.x == 0.0 && last.x == 0.0 {
-            // The axis closes it.
-            points.push(first);
-        }
-        if profile::outlines(&points).is_none() {
-            return Ok(self.usable("lathe", span, open_lathe(&points)));
-        }
-        let pieces = self.cut(&points, span)?;
-        Ok(self.joined("lathe", span, pieces.iter().map(lathe_piece)))
-    }
-
-    /// The union of the pieces that have a volume; slivers that rounding has flattened have none.
-    fn joined(
-        &mut self,
-        word: &str,
-        span: Span,
-        pieces: impl Iterator<Item = Result<Solid, ShapeError>>,
-    ) -> Option<Geometry> {
-        let mut solids = Vec::new();
-        let mut failed = ShapeError::BadPolyhedron("flat");
-        for piece in pieces {
-            match piece {
-                Ok(solid) => solids.push(solid),
-                Err(error) => failed = error,
+        self.book(400 * points.len() as u64)?;
+        let end = edges.last().map_or(start, |(_, to)| *to);
+        let is_closed = end.distance(start) < CLOSED || (start.x == 0.0 && end.x == 0.0);
+        let made = if is_closed {
+            let mut outline = Outline::starting_at(start);
+            for &(edge, to) in &edges {
+                outline.push(edge, to);
             }
-        }
-        let made = if solids.is_empty() {
-            Err(failed)
+            let turned = Region::new(&[outline])
+                .and_then(|region| region.right_half())
+                .and_then(|region| Solid::lathe(&region)?.transform(upright()));
+            turned.map(Geometry::Solid)
         } else {
-            Ok(Geometry::Solid(Solid::union(solids)))
+            open_lathe(start, &edges)
         };
-        self.usable(word, span, made)
+        Ok(self.usable("lathe", span, made))
     }
+}
 
-    fn curved(&mut self, word: &str) -> Parsed<Option<Geometry>> {
-        let token = self.next();
-        let message = format!("a {word} of curves is not supported: it is left out");
-        self.warn(token.span, message);
-        // The numbers up to the modifiers.
-        loop {
-            let token = self.peek();
-            let modifier = token.word().is_some_and(|w| {
-                !matches!(
-                    &**w,
-                    "linear_sweep" | "conic_sweep" | "x" | "y" | "z" | "u" | "v"
-                )
-            });
-            if token.is("}") || modifier || token.kind == super::lexer::Kind::End {
-                return Ok(None);
-            }
-            if token.is(",") || token.word().is_some() {
-                self.next();
-            } else {
-                self.terms()?;
-            }
-        }
+/// From the plane's coordinates and the height to POV-Ray's x, z and y.
+fn upright() -> DAffine3 {
+    DAffine3::from_mat3(DMat3::from_cols(DVec3::X, DVec3::Z, DVec3::Y))
+}
+
+/// The region between two heights, as large as the height where it is `conic`.
+fn swept(region: &Region, heights: [f64; 2], conic: bool) -> Result<Solid, ShapeError> {
+    if !conic {
+        return Solid::prism(region, heights[0], heights[1])?.transform(upright());
     }
+    let mut parts = Vec::new();
+    let [low, high] = heights;
+    if high > 0.0 {
+        let z = [low.max(0.0), high];
+        parts.push(Solid::tapered_prism(region, z, z)?);
+    }
+    if low < 0.0 {
+        // Below, the region is seen through the apex.
+        let turned = region.transformed(&DAffine3::from_scale(DVec3::new(-1.0, -1.0, 1.0)))?;
+        let z = [low, high.min(0.0)];
+        parts.push(Solid::tapered_prism(&turned, z, z.map(f64::abs))?);
+    }
+    Solid::union(parts).transform(upright())
 }
 
 /// A frame in whose xy plane the points lie.
@@ -224,102 +210,25 @@ fn plane_of(points: &[DVec3]) -> Option<DAffine3> {
     Some(DAffine3::from_cols(x, normal.cross(x), normal, origin))
 }
 
-/// The prisms over one trapezoid; two where it crosses the apex of a conic sweep.
-fn prism_piece(
-    piece: &Trapezoid,
-    heights: [f64; 2],
-    conic: bool,
-) -> Vec<Result<Solid, ShapeError>> {
-    let ranges = if conic && heights[0] < 0.0 && heights[1] > 0.0 {
-        vec![[heights[0], 0.0], [0.0, heights[1]]]
-    } else {
-        vec![heights]
-    };
-    let solid = |range: [f64; 2]| {
-        let ring = |y: f64| {
-            let s = if conic { y } else { 1.0 };
-            [
-                (piece.left[0], piece.y[0]),
-                (piece.right[0], piece.y[0]),
-                (piece.right[1], piece.y[1]),
-                (piece.left[1], piece.y[1]),
-            ]
-            .map(|(x, z)| DVec3::new(x * s, y, z * s))
-        };
-        let (low, high) = (ring(range[0]), ring(range[1]));
-        let mut corners: Vec<DVec3> = Vec::new();
-        let mut index = |p: DVec3| {
-            let known = corners.iter().position(|q| *q == p);
-            known.unwrap_or_else(|| {
-                corners.push(p);
-                corners.len() - 1
-            }) as u32
-        };
-        let quads = [
-            low,
-            high,
-            [low[0], low[1], high[1], high[0]],
-            [low[1], low[2], high[2], high[1]],
-            [low[2], low[3], high[3], high[2]],
-            [low[3], low[0], high[0], high[3]],
-        ];
-        let mut faces: Vec<Vec<u32>> = Vec::new();
-        for quad in quads {
-            let mut face: Vec<u32> = quad.into_iter().map(&mut index).collect();
-            face.dedup();
-            if face.len() > 1 && face.first() == face.last() {
-                face.pop();
-            }
-            if face.len() >= 3 {
-                faces.push(face);
-            }
-        }
-        let polyhedron = ConvexPolyhedron::from_faces(corners, &faces)?;
-        Ok(Solid::convex(Arc::new(polyhedron)))
-    };
-    ranges.into_iter().map(solid).collect()
-}
-
-/// One trapezoid turned about the y axis: a frustum less the frustum within.
-fn lathe_piece(piece: &Trapezoid) -> Result<Solid, ShapeError> {
-    let frustum = |r: [f64; 2]| -> Result<Solid, ShapeError> {
-        let [a, b] = piece.y.map(|y| DVec3::new(0.0, y, 0.0));
-        match conical(a, r[0], b, r[1], false)? {
-            Geometry::Solid(solid) => Ok(solid),
-            _ => Ok(Solid::empty()),
-        }
-    };
-    let outer = frustum(piece.right.map(f64::abs))?;
-    if piece.left[0] <= 0.0 && piece.left[1] <= 0.0 {
-        return Ok(outer);
-    }
-    Ok(Solid::difference([
-        outer,
-        frustum(piece.left.map(|x| x.max(0.0)))?,
-    ]))
-}
-
 /// A profile that is not closed: the surface alone.
-fn open_lathe(points: &[DVec2]) -> Result<Geometry, ShapeError> {
+fn open_lathe(start: DVec2, edges: &[(Edge, DVec2)]) -> Result<Geometry, ShapeError> {
     let mut parts = Vec::new();
-    for pair in points.windows(2) {
-        let (a, b) = (pair[0], pair[1]);
-        if a == b {
-            continue;
-        }
-        let part = if a.y == b.y {
-            let (inner, outer) = (a.x.abs().min(b.x.abs()), a.x.abs().max(b.x.abs()));
-            Geometry::Sheet(Sheet::disc(
-                DVec3::new(0.0, a.y, 0.0),
-                DVec3::Y,
-                outer,
-                inner,
-            )?)
-        } else {
+    let mut a = start;
+    for &(edge, b) in edges {
+        if edge != Edge::Line {
+            for shell in profile::turned_shells(a, edge, b)? {
+                parts.push(Geometry::Sheet(shell.transform(upright())?));
+            }
+        } else if a.y == b.y && a != b {
+            let (inner, outer) = (a.x.min(b.x), a.x.max(b.x));
+            let center = DVec3::new(0.0, a.y, 0.0);
+            let disc = Sheet::disc(center, DVec3::Y, outer, inner)?;
+            parts.push(Geometry::Sheet(disc));
+        } else if a != b {
             let [p, q] = [a.y, b.y].map(|y| DVec3::new(0.0, y, 0.0));
-            conical(p, a.x.abs(), q, b.x.abs(), true)?
-        };
-        parts.push(part);
+            parts.push(conical(p, a.x, q, b.x, true)?);
+        }
+        a = b;
     }
     Ok(Geometry::Sheets(parts))
 }
