@@ -1,7 +1,7 @@
 //! A differential fuzzer: random scenes of solids against membership by definition.
 //!
 //! `OCTRAY_CASES` multiplies the work of the default run (5000 rays), `OCTRAY_SEED` changes the
-//! scenes. The full run of ten million rays:
+//! scenes, `OCTRAY_SCENE` runs one of them alone. The full run of ten million rays:
 //!
 //! ```text
 //! OCTRAY_CASES=2000 cargo test --release -p octray-world --test differential -- --nocapture random
@@ -40,12 +40,19 @@ fn setting(name: &str, default: u64) -> u64 {
 #[expect(clippy::print_stderr, reason = "long runs say how far they are")]
 fn random_scenes_agree_with_membership_by_definition() {
     let cases = setting("OCTRAY_CASES", 1);
+    let only = setting("OCTRAY_SCENE", u64::MAX);
     let campaign = Campaign {
         seed: setting("OCTRAY_SEED", 1),
-        scenes: 40 * cases,
+        first: if only == u64::MAX { 0 } else { only },
+        scenes: if only == u64::MAX { 40 * cases } else { 1 },
         rays_per_scene: 125,
     };
+    let mut told = 0;
     let report = campaign.run(|report| {
+        for found in &report.found[told..] {
+            eprintln!("scene {}: {:?}", found.scene, found.disagreement.wrong);
+        }
+        told = report.found.len();
         if report.scenes % (256 * 32) == 0 {
             eprintln!("{}, {} disagree", report.lines()[0], report.found.len());
         }
@@ -70,6 +77,9 @@ fn random_scenes_agree_with_membership_by_definition() {
         );
     }
     assert!(report.found.is_empty(), "{} disagree", report.found.len());
+    if only != u64::MAX {
+        return;
+    }
     // Rays that run along boundaries leave little to compare; the others must not.
     let random = report.by_family[&Family::Random];
     assert!(random.undecidable * 10 < random.samples, "{random:?}");
