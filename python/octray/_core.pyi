@@ -6,7 +6,7 @@ from typing import Any, Literal, Protocol, SupportsIndex, TypeAlias, final
 
 import numpy as np
 import numpy.typing as npt
-from typing_extensions import Unpack, disjoint_base
+from typing_extensions import Self, Unpack, disjoint_base
 
 from octray._options import Accel, MeshRule, Overlaps, RenderOptions, View
 from octray.ray import RayIntersector
@@ -42,8 +42,8 @@ __all__ = [
     "load",
     "mesh_solid",
     "polyhedron",
-    "prism",
     "polynomial",
+    "prism",
     "quadric",
     "quartic",
     "sphere",

@@ -45,11 +45,9 @@ pub fn eigen(m: &DMat3) -> (DVec3, DMat3) {
             a[r][p] = c * arp - s * arq;
             a[r][q] = s * arp + c * arq;
             (a[p][r], a[q][r]) = (a[r][p], a[r][q]);
-            for k in 0..3 {
-                let (vp, vq) = (v[p][k], v[q][k]);
-                v[p][k] = c * vp - s * vq;
-                v[q][k] = s * vp + c * vq;
-            }
+            let (vp, vq) = (v[p], v[q]);
+            v[p] = std::array::from_fn(|k| c * vp[k] - s * vq[k]);
+            v[q] = std::array::from_fn(|k| s * vp[k] + c * vq[k]);
         }
         if !turned {
             break;

@@ -44,6 +44,8 @@ mod _core {
     #[pymodule_export]
     use super::material::Material;
     #[pymodule_export]
+    use super::profile::{Outline, lathe, prism};
+    #[pymodule_export]
     use super::queries::{Hits, Intersections};
     #[pymodule_export]
     use super::render::check_request;
