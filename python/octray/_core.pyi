@@ -6,7 +6,7 @@ from typing import Any, Literal, Protocol, SupportsIndex, TypeAlias, final
 
 import numpy as np
 import numpy.typing as npt
-from typing_extensions import Self, Unpack, disjoint_base
+from typing_extensions import Unpack, disjoint_base
 
 from octray._options import Accel, MeshRule, Overlaps, RenderOptions, View
 from octray.ray import RayIntersector
@@ -113,7 +113,7 @@ _Pair: TypeAlias = tuple[float, float]
 
 @final
 class Outline:
-    def __new__(cls, x: float, y: float) -> Self: ...
+    def __new__(cls, x: float, y: float) -> Outline: ...
     @staticmethod
     def circle(r: float, center: _Pair = (0.0, 0.0)) -> Outline: ...
     def line_to(self, x: float, y: float) -> Outline: ...

@@ -2,7 +2,8 @@
 
 use std::sync::Arc;
 
-use octray::geometry::{ConvexPolyhedron, MeshRule, ShapeError, SolidNode, TriangleMesh};
+use octray::geometry::mesh::MeshRule;
+use octray::geometry::{ConvexPolyhedron, ShapeError, SolidNode, TriangleMesh};
 use octray::math::{DAffine3, DVec3, transform};
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
