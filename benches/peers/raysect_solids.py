@@ -209,41 +209,46 @@ def torus_rays(ratio: float, distance: float, count: int, seed: int) -> np.ndarr
     return np.hstack([origin, (target - origin) / np.linalg.norm(target - origin, axis=1)[:, None]])
 
 
-TORUS_CASES = [
-    (ratio, distance)
-    for ratio in (0.001, 0.01, 0.1, 0.5, 0.999)
-    for distance in (1.0, 1e2, 1e4, 1e6)
-]
+TORUS_RATIOS = (0.001, 0.01, 0.1, 0.5, 0.999)
+#: Names and distances from the torus, in its radii.
+TORUS_DISTANCES = {"1 to 100": (1.0, 10.0, 100.0), "10^4 to 10^6": (1e4, 1e5, 1e6)}
+
+
+def torus_cases(distances: tuple[float, ...], count: int) -> Iterator[tuple[float, np.ndarray]]:
+    """Ratios of tubes, and rays into each of them: ``count`` in all."""
+    cases = [(ratio, distance) for ratio in TORUS_RATIOS for distance in distances]
+    for seed, (ratio, distance) in enumerate(cases):
+        yield ratio, torus_rays(ratio, distance, count // len(cases), seed)
 
 
 def torus(count: int, kind: Any) -> Iterator[Row]:
     """Rays aimed into the tube: none may miss, and a closed surface is crossed evenly."""
     from raysect.core import World
 
-    lost, odd, ours_lost, ours_odd, total = 0, 0, 0, 0, 0
-    for seed, (ratio, distance) in enumerate(TORUS_CASES):
-        rays = torus_rays(ratio, distance, count // len(TORUS_CASES), seed)
-        theirs = crossings(kind(1.0, ratio, parent=World()), rays)
-        scene = octray.Scene()
-        scene.add(octray.torus(1.0, ratio))
-        ours = scene.count_intersections(rays)
-        total += len(rays)
-        lost += np.count_nonzero(theirs == 0)
-        odd += np.count_nonzero(theirs % 2)
-        ours_lost += np.count_nonzero(ours == 0)
-        ours_odd += np.count_nonzero(ours % 2)
-    name = "torus, tube 0.001 to 0.999 of its radius, seen from 1 to 10^6 radii"
-    yield Row(
-        name,
-        "rays aimed into the tube that miss",
-        "raysect",
-        share(lost, total),
-        share(ours_lost, total),
-    )
-    yield Row(
-        name,
-        "odd number of crossings",
-        "raysect",
-        share(odd, total),
-        share(ours_odd, total),
-    )
+    for far, distances in TORUS_DISTANCES.items():
+        lost, odd, ours_lost, ours_odd, total = 0, 0, 0, 0, 0
+        for ratio, rays in torus_cases(distances, count):
+            theirs = crossings(kind(1.0, ratio, parent=World()), rays)
+            scene = octray.Scene()
+            scene.add(octray.torus(1.0, ratio))
+            ours = scene.count_intersections(rays)
+            total += len(rays)
+            lost += np.count_nonzero(theirs == 0)
+            odd += np.count_nonzero(theirs % 2)
+            ours_lost += np.count_nonzero(ours == 0)
+            ours_odd += np.count_nonzero(ours % 2)
+        name = f"torus, tube 0.001 to 0.999 of its radius, seen from {far} radii"
+        yield Row(
+            name,
+            "rays aimed into the tube that miss",
+            "raysect",
+            share(lost, total),
+            share(ours_lost, total),
+        )
+        yield Row(
+            name,
+            "odd number of crossings",
+            "raysect",
+            share(odd, total),
+            share(ours_odd, total),
+        )

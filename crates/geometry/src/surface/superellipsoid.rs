@@ -196,6 +196,19 @@ impl Octant {
         rises || (r0 < w0 && r0 < w1 && r1 < w0 && r1 < w1)
     }
 
+    /// Whether both functions are straight between two samples, as far as rounding tells. On a line
+    /// in a flat part of the surface their difference is nothing but rounding: no division ends.
+    fn is_straight(s0: &Sample, s1: &Sample) -> bool {
+        let step = s1.t - s0.t;
+        (0..2).all(|which| {
+            let (v0, v1) = (s0.values[which], s1.values[which]);
+            let rise = v1 - v0;
+            let least = 8.0 * f64::EPSILON * v0.abs().max(v1.abs());
+            let bend = |s: &Sample| (s.slopes[which] * step - rise).abs();
+            bend(s0) <= least && bend(s1) <= least
+        })
+    }
+
     /// Adds the sign changes between two samples.
     /// `left` counts down the samples that may still be taken.
     fn crossings(
@@ -211,6 +224,7 @@ impl Octant {
         let decided = Self::is_monotone(s0, s1)
             || (change && self.bends_once(s0, s1))
             || (!change && self.excludes(s0, s1))
+            || Self::is_straight(s0, s1)
             || depth == 0
             || *left == 0
             || !(s0.t < middle && middle < s1.t);
@@ -234,7 +248,7 @@ pub(super) fn crossings(exponents: [f64; 2], o: DVec3, d: DVec3) -> SignChangeLi
     let p = o + unit * closest;
     let mut changes = SignChangeList::new(false);
     let span = Aabb::new(-DVec3::ONE, DVec3::ONE).clip(&Ray::new(p, unit));
-    if !(span.start < span.end) {
+    if span.is_empty() || span.start == span.end {
         return changes;
     }
     // Coordinate planes, in order.
@@ -250,7 +264,7 @@ pub(super) fn crossings(exponents: [f64; 2], o: DVec3, d: DVec3) -> SignChangeLi
     let mut low = outside(span.start);
     let mut left = MAX_SAMPLES;
     for (i, pair) in knots.windows(2).enumerate() {
-        if !(pair[0] < pair[1]) {
+        if pair[0] == pair[1] {
             continue;
         }
         let middle = p + unit * (0.5 * (pair[0] + pair[1]));

@@ -98,7 +98,7 @@ fn polyhedra_that_pass_through_themselves_are_taken_by_winding_number_with_a_war
         )
     };
     let apart = clean(&pair(10.0));
-    assert!(matches!(primitive(only(&apart)), Primitive::Mesh(_)));
+    assert!(matches!(primitive(only(&apart)), Primitive::Composite(_)));
     let (scene, warnings) = read(&pair(0.5));
     assert!(matches!(primitive(only(&scene)), Primitive::Mesh(_)));
     assert_eq!(warnings.len(), 1, "{warnings:?}");
