@@ -2,6 +2,7 @@
 
 mod aimed;
 mod classify;
+mod contours;
 mod crossings;
 mod double_double;
 mod tangent;
