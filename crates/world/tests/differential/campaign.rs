@@ -13,6 +13,8 @@ use crate::model::Case;
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Campaign {
     pub(crate) seed: u64,
+    /// The first scene's number.
+    pub(crate) first: u64,
     pub(crate) scenes: u64,
     pub(crate) rays_per_scene: u32,
 }
@@ -80,9 +82,9 @@ impl Campaign {
     pub(crate) fn run(&self, mut progress: impl FnMut(&Report) -> bool) -> Report {
         const BATCH: u64 = 256;
         let mut report = Report::default();
-        let mut start = 0;
-        while start < self.scenes {
-            let end = self.scenes.min(start + BATCH);
+        let (mut start, last) = (self.first, self.first + self.scenes);
+        while start < last {
+            let end = last.min(start + BATCH);
             let scenes: Vec<Report> = (start..end)
                 .into_par_iter()
                 .map(|index| self.scene(index))

@@ -106,14 +106,16 @@ proptest! {
                 prop_assert_eq!(&got, &expected);
             }
             prop_assert_eq!(got.len(), expected.len());
-            for (got, expected) in got.iter().zip(&expected) {
-                prop_assert!((got.0 - expected.0).abs() * direction.length() <= 1e-7);
+            for (own, expected) in got.iter().zip(&expected) {
+                prop_assert!((own.0 - expected.0).abs() * direction.length() <= 1e-7);
             }
             // Here B's surfaces come first and stand for those of A that coincide with them.
             let turned = places(&parts[1]);
-            prop_assert_eq!(turned.len(), expected.len());
-            for (got, expected) in turned.iter().zip(&expected) {
-                prop_assert_eq!(got.1, expected.1);
+            for found in [got, turned] {
+                prop_assert_eq!(found.len(), expected.len());
+                for (got, expected) in found.iter().zip(&expected) {
+                    prop_assert_eq!(got.1, expected.1);
+                }
             }
         }
     }

@@ -6,13 +6,13 @@
 use octray_geometry::Primitive;
 use octray_math::DVec3;
 
-use super::implicit;
+use super::Leaf;
 use super::number::Number;
 
 /// The clearance of a point from a primitive.
 ///
 /// # Panics
-/// For a primitive whose definition is not written down here (meshes).
+/// For a primitive whose definition is not written down here (meshes), or as a polynomial.
 pub(crate) fn clearance<N: Number>(primitive: &Primitive, [x, y, z]: [N; 3]) -> N {
     let rho = || (x.squared() + y.squared()).sqrt();
     // Between two heights, of which infinite ones do not count.
@@ -64,10 +64,7 @@ pub(crate) fn clearance<N: Number>(primitive: &Primitive, [x, y, z]: [N; 3]) -> 
         Primitive::Superellipsoid { exponents } => {
             N::of(superellipsoid(*exponents, [x, y, z].map(Number::rounded)))
         }
-        other => match implicit::terms(other) {
-            Some(terms) => implicit::clearance(&terms, [x, y, z]),
-            None => panic!("no definition of {other:?}"),
-        },
+        other => panic!("no definition of {other:?}"),
     }
 }
 
@@ -114,14 +111,14 @@ pub(crate) fn extent(primitive: &Primitive) -> f64 {
 }
 
 /// The flat faces of a primitive, `normal . x <= offset`, and the clearance from its curved one.
-pub(crate) fn faces(primitive: &Primitive, q: DVec3) -> (Vec<(DVec3, f64)>, Option<f64>) {
+pub(super) fn faces(leaf: &Leaf, q: DVec3) -> (Vec<(DVec3, f64)>, Option<f64>) {
     let caps = |z: &[f64; 2]| {
         let ends = [(DVec3::Z, z[1]), (DVec3::NEG_Z, -z[0])];
         ends.into_iter().filter(|end| end.1.is_finite()).collect()
     };
     let mantle = |open: Primitive| Some(clearance(&open, q.to_array()));
     let ends = [f64::NEG_INFINITY, f64::INFINITY];
-    match primitive {
+    match &leaf.primitive {
         Primitive::Box { min, max } => {
             let axes = [DVec3::X, DVec3::Y, DVec3::Z].into_iter();
             let sides = axes.flat_map(|n| [(n, max.dot(n)), (-n, -min.dot(n))]);
@@ -139,6 +136,6 @@ pub(crate) fn faces(primitive: &Primitive, q: DVec3) -> (Vec<(DVec3, f64)>, Opti
         }
         Primitive::HalfSpace { normal, offset } => (vec![(*normal, *offset)], None),
         Primitive::Convex(polyhedron) => (polyhedron.planes.clone(), None),
-        other => (Vec::new(), Some(clearance(other, q.to_array()))),
+        _ => (Vec::new(), Some(leaf.clearance(q.to_array()))),
     }
 }

@@ -41,14 +41,20 @@ pub(super) fn terms(primitive: &Primitive) -> Option<Vec<Term>> {
     }
 }
 
-/// A distance within which the polynomial keeps its sign, with that sign.
-pub(super) fn clearance<N: Number>(terms: &[Term], q: [N; 3]) -> N {
+/// The value of the polynomial.
+pub(super) fn value<N: Number>(terms: &[Term], q: [N; 3]) -> N {
     let power = |x: N, n: usize| (0..n).fold(N::of(1.0), |product, _| product * x);
     let mut value = N::of(0.0);
     for (c, powers) in terms {
         let product = (0..3).fold(N::of(*c), |p, axis| p * power(q[axis], powers[axis]));
         value = value + product;
     }
+    value
+}
+
+/// A distance within which the polynomial keeps its sign, with that sign.
+pub(super) fn clearance<N: Number>(terms: &[Term], q: [N; 3]) -> N {
+    let value = value(terms, q);
     let at = q.map(Number::rounded);
     let reach = at.iter().fold(1.0_f64, |size, x| size.max(x.abs()));
     let degree = |powers: &[usize; 3]| powers.iter().sum::<usize>() as i32;
@@ -87,15 +93,7 @@ fn steps(terms: &[Term], at: [f64; 3]) -> Vec<f64> {
                 let c = expanded[(i * side + j) * side + k];
                 match i + j + k {
                     0 => {}
-                    1 => {
-                        gradient[if i == 1 {
-                            0
-                        } else if j == 1 {
-                            1
-                        } else {
-                            2
-                        }] = c
-                    }
+                    1 => gradient[j + 2 * k] = c,
                     n => sums[n] += c.abs(),
                 }
             }
@@ -124,7 +122,7 @@ fn distance(steps: &[f64], change: f64) -> f64 {
             sum = (sum + step) * m;
         }
         let next = m - (sum - change) / slope;
-        if !(next < m * (1.0 - 1e-12)) {
+        if next.is_nan() || next >= m * (1.0 - 1e-12) {
             break;
         }
         m = next;
@@ -141,7 +139,7 @@ mod tests {
         let terms = terms(&Primitive::Quadric(QuadricForm::OneSheet)).expect("a quadric");
         // From the axis the waist is 1 away.
         let from_axis = clearance(&terms, [0.0, 0.0, 0.0]);
-        assert!(from_axis < -0.5 && from_axis >= -1.0, "{from_axis}");
+        assert!((-1.0..-0.5).contains(&from_axis), "{from_axis}");
         let beyond = clearance(&terms, [3.0, 0.0, 0.0]);
         assert!(beyond > 0.8 && beyond < 2.0, "{beyond}");
         assert_eq!(clearance(&terms, [1.0, 0.0, 0.0]), 0.0);

@@ -1,7 +1,7 @@
 //! Where a ray may cross the primitives. Only proposals of where to look: a wrong one costs a
 //! sample, a missing one costs attention, and no answer depends on either.
 
-use super::clearance::clearance;
+use super::implicit;
 use super::sight::LocalLine;
 use super::{Leaf, Sight};
 
@@ -32,8 +32,12 @@ impl Sight<'_> {
                 open: None,
                 found: Vec::new(),
             };
-            walk.divide(-reach, reach, HALVINGS);
-            walk.close();
+            if leaf.terms.is_some() {
+                walk.sample(reach);
+            } else {
+                walk.divide(-reach, reach, HALVINGS);
+                walk.close();
+            }
             found.extend(walk.found.iter().map(|u| self.shift + u));
         }
         found.sort_by(f64::total_cmp);
@@ -42,9 +46,28 @@ impl Sight<'_> {
 }
 
 impl Walk<'_> {
+    /// Negative inside: the clearance, or the value of the polynomial that defines the primitive.
     fn value(&self, u: f64) -> f64 {
-        let q = self.line.origin + self.line.direction * u;
-        clearance(&self.leaf.primitive, q.to_array())
+        let q = (self.line.origin + self.line.direction * u).to_array();
+        match &self.leaf.terms {
+            Some(terms) => implicit::value(terms, q),
+            None => self.leaf.clearance(q),
+        }
+    }
+
+    /// Looks at evenly spaced points: for polynomials, whose clearances cost too much.
+    fn sample(&mut self, reach: f64) {
+        let step = reach / 100.0;
+        let at = |i: i32| f64::from(i) * step;
+        for i in -100..100 {
+            let [a, b, c] = [i - 1, i, i + 1].map(|i| self.value(at(i)));
+            if (b < 0.0) != (c < 0.0) {
+                self.bisect(at(i), at(i + 1));
+            } else if (a < 0.0) == (b < 0.0) && b.abs() < a.abs() && b.abs() <= c.abs() {
+                self.open = Some((at(i - 1), at(i + 1)));
+                self.close();
+            }
+        }
     }
 
     fn divide(&mut self, low: f64, high: f64, halvings: u32) {

@@ -3,7 +3,7 @@
 use octray_geometry::surface::SURFACE_TOLERANCE;
 use octray_math::{DVec3, Ray};
 
-use super::clearance::{clearance, faces};
+use super::clearance::faces;
 use super::number::{Number, Twofold};
 use super::{Answer, Leaf, Oracle};
 
@@ -117,7 +117,7 @@ impl<'a> Sight<'a> {
         let line = &self.lines[index];
         let q = line.origin + line.direction * u;
         let margin = self.margin(leaf, q, far, uncertainty);
-        let coarse = clearance(&leaf.primitive, q.to_array());
+        let coarse = leaf.clearance(q.to_array());
         if coarse.abs() > 2.0 * margin {
             return Some(coarse < 0.0);
         }
@@ -125,7 +125,7 @@ impl<'a> Sight<'a> {
             return None;
         }
         let point = leaf.frame.local(point_at(&self.ray, t));
-        let fine = clearance(&leaf.primitive, point).rounded();
+        let fine = leaf.clearance(point).rounded();
         (fine.abs() > margin).then_some(fine < 0.0)
     }
 
@@ -141,7 +141,7 @@ impl<'a> Sight<'a> {
             let q = DVec3::from_array(fine.map(Number::rounded));
             let near = 2.0 * self.margin(leaf, q, far, uncertainty);
             let clear = near.max(room * leaf.frame.shrink);
-            let (flat, curved) = faces(&leaf.primitive, q);
+            let (flat, curved) = faces(leaf, q);
             if curved.is_some_and(|clearance| clearance.abs() <= clear) {
                 return None;
             }
