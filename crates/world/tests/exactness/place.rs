@@ -20,7 +20,7 @@ fn machine(k: f64) -> Vec<Solid> {
     let sink = valid(Solid::cone(0.3 * k, 0.5 * k, 0.2 * k, 0.4 * k));
     let seal = move_to(valid(Solid::torus(0.6 * k, 0.15 * k)), at(0.0, 0.0, 0.4));
     let knob = move_to(valid(Solid::sphere(0.45 * k)), at(1.0, 0.6, 0.4));
-    let rod = valid(Solid::cylinder(0.12 * k, -1.0 * k, 1.0 * k));
+    let rod = valid(Solid::cylinder(0.12 * k, -k, k));
     let tilt = octray_math::transform::rotation_xyz_degrees(DVec3::new(80.0, 10.0, 35.0));
     vec![
         Solid::difference([

@@ -144,7 +144,7 @@ impl Oracle {
                 _ => None,
             }
         });
-        let frame = SceneFrame::new(&finite_box(scene.bounds(), unbounded));
+        let frame = SceneFrame::new(&finite_box(scene.bounds(), &unbounded.collect::<Vec<_>>()));
         Self {
             leaves,
             owners,
