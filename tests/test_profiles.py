@@ -28,7 +28,7 @@ def volume(solid: octray.Solid, rays: int = 300) -> float:
     zeros, ones = np.zeros_like(x), np.ones_like(x)
     origins = np.column_stack([x, y, zeros + low[2] - 1, zeros, zeros, ones])
     chords = scene.list_intersections(origins)
-    return float(np.sum(chords.t_out - chords.t_in) * steps[0] * steps[1])
+    return float(np.sum(chords.lengths) * steps[0] * steps[1])
 
 
 def test_a_prism_has_the_volume_of_its_area() -> None:

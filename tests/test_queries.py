@@ -159,6 +159,6 @@ def test_the_scene_may_change_between_questions() -> None:
 def test_wrong_methods_are_named() -> None:
     scene = sample_scene()
     with pytest.raises(ValueError, match="fast"):
-        scene.cast_rays(random_rays(1), accel="fast")  # type: ignore[arg-type]
+        scene.cast_rays(random_rays(1), accel="fast")
     with pytest.raises(ValueError, match="threads must be 1 to 1024, not 0"):
         scene.cast_rays(random_rays(1), threads=0)

@@ -9,8 +9,9 @@ if TYPE_CHECKING:
 
     from octray._core import Image
 
-#: Octrees, or every surface for every ray. The answers are the same bits.
-Accel = Literal["auto", "brute"]
+#: How surfaces are found: ``auto``, ``brute``, ``spheres``, ``boxes``, ``grid[:N]`` or
+#: ``octree[:ENCODING[:TRAVERSAL]]`` (see ``octray.methods()``). The answers are the same bits.
+Accel = str
 MeshRule = Literal["strict", "winding"]
 #: Whose intervals count where solids overlap.
 Overlaps = Literal["regions", "priorities", "objects"]

@@ -42,42 +42,31 @@ impl Sum for f64 {
     }
 }
 
-/// A polynomial of the line's parameter.
+/// A polynomial of the line's parameter with `N` coefficients, lowest first.
 #[derive(Clone, Copy)]
-struct OnLine {
-    coefficients: [f64; MAX_DEGREE + 1],
-    degree: usize,
-}
+struct OnLine<const N: usize>([f64; N]);
 
-impl Sum for OnLine {
+impl<const N: usize> Sum for OnLine<N> {
     /// `p + d t`.
     type Factor = [f64; 2];
-    const ZERO: Self = Self {
-        coefficients: [0.0; MAX_DEGREE + 1],
-        degree: 0,
-    };
+    const ZERO: Self = Self([0.0; N]);
 
     fn plus_constant(mut self, constant: f64) -> Self {
-        self.coefficients[0] += constant;
+        self.0[0] += constant;
         self
     }
 
     fn plus(mut self, other: &Self) -> Self {
-        self.degree = self.degree.max(other.degree);
-        for (a, b) in self.coefficients[..=self.degree]
-            .iter_mut()
-            .zip(&other.coefficients)
-        {
+        for (a, b) in self.0.iter_mut().zip(&other.0) {
             *a += b;
         }
         self
     }
 
     fn times(mut self, [p, d]: &[f64; 2]) -> Self {
-        // Sums start at 0 and are multiplied once less than the degree of the whole.
-        self.degree = (self.degree + 1).min(MAX_DEGREE);
+        // The highest coefficient is 0 before: sums are multiplied as often as they have degrees.
         let mut below = 0.0;
-        for c in &mut self.coefficients[..=self.degree] {
+        for c in &mut self.0 {
             (*c, below) = (*c * p + below * d, *c);
         }
         self
@@ -230,8 +219,13 @@ impl Polynomial {
     /// Where the sign changes on the line `p + t d`.
     pub(crate) fn crossings(&self, p: DVec3, d: DVec3) -> SignChangeList {
         let factors = [[p.x, d.x], [p.y, d.y], [p.z, d.z]];
-        let line = self.sum::<OnLine>(&factors, |c| c);
-        sign_changes(&line.coefficients[..=self.degree])
+        if self.degree <= 4 {
+            let line = self.sum::<OnLine<5>>(&factors, |c| c).0;
+            sign_changes(&line[..=self.degree])
+        } else {
+            let line = self.sum::<OnLine<{ MAX_DEGREE + 1 }>>(&factors, |c| c).0;
+            sign_changes(&line[..=self.degree])
+        }
     }
 
     /// Value and derivatives at a point.

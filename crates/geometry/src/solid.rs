@@ -317,15 +317,15 @@ impl Solid {
     /// # Errors
     /// An index is out of range, a coordinate is not finite, or the faces do not enclose a volume:
     /// each edge must be shared by two faces, in opposite directions.
-    pub fn polyhedron(vertices: Vec<DVec3>, faces: &[Vec<u32>]) -> Result<Self, ShapeError> {
-        let mut mesh = polyhedron::triangulated(vertices.clone(), faces)?;
+    pub fn polyhedron(vertices: &[DVec3], faces: &[Vec<u32>]) -> Result<Self, ShapeError> {
+        let mut mesh = polyhedron::triangulated(vertices.to_vec(), faces)?;
         let mut faces = faces.to_vec();
         if mesh.check_closed().is_ok() && mesh.is_inside_out() {
             mesh = mesh.reversed();
             faces.iter_mut().for_each(|face| face.reverse());
         }
         let solid = Self::mesh(Arc::new(mesh), MeshRule::Strict)?;
-        Ok(Self::exact_polyhedron(&vertices, &faces).unwrap_or(solid))
+        Ok(Self::exact_polyhedron(vertices, &faces).unwrap_or(solid))
     }
 
     /// Like [`Solid::polyhedron`], with the exact plane of every face: for faces that are known to

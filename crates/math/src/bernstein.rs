@@ -6,7 +6,10 @@ use crate::roots;
 /// The highest degree: the square of a cubic.
 const MAX_DEGREE: usize = 6;
 /// Roots closer together than `2^-MAX_HALVINGS` of the interval are not told apart.
-const MAX_HALVINGS: u32 = 40;
+const MAX_HALVINGS: u32 = 34;
+/// Half the width of the piece around every point of separation: a root there may be seen on
+/// either side of it, by rounding, but not on either side of that piece.
+const GUARD: f64 = 1.0 / (1_u64 << 37) as f64;
 
 const BINOMIAL: [[f64; MAX_DEGREE + 1]; MAX_DEGREE + 1] = [
     [1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0],
@@ -104,7 +107,7 @@ impl Bernstein {
 
     /// Visits, increasing, points in `(0, 1)` between any two of which the polynomial changes from
     /// positive to not positive or back at most once, except where such changes are closer
-    /// together than 2^-40.
+    /// together than 2^-34.
     ///
     /// By halving until the coefficients' signs vary at most once (Descartes' rule in Bernstein
     /// form; Lane and Riesenfeld 1981).
@@ -119,8 +122,26 @@ impl Bernstein {
         let (left, right) = self.halves();
         let middle = 0.5 * (low + high);
         left.separate_between(low, middle, halvings - 1, visit);
-        visit(middle);
+        visit(middle - GUARD);
+        visit(middle + GUARD);
         right.separate_between(middle, high, halvings - 1, visit);
+    }
+
+    /// The same, but positive or not at 0 and 1 as said: for values there that another way of
+    /// computing them, by its rounding, puts on the other side of 0.
+    #[must_use]
+    pub fn with_signs(mut self, positive_at_0: bool, positive_at_1: bool) -> Self {
+        for (index, positive) in [(0, positive_at_0), (self.degree, positive_at_1)] {
+            let c = &mut self.coefficients[index];
+            if (*c > 0.0) != positive {
+                *c = if positive {
+                    f64::MIN_POSITIVE
+                } else {
+                    -f64::MIN_POSITIVE
+                };
+            }
+        }
+        self
     }
 
     /// How often neighbouring coefficients change between positive and not positive.

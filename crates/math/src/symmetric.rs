@@ -11,7 +11,7 @@ use glam::{DMat3, DVec3};
 #[must_use]
 pub fn eigen(m: &DMat3) -> (DVec3, DMat3) {
     let mut a = m.to_cols_array_2d();
-    let mut v = DMat3::IDENTITY.to_cols_array_2d();
+    let mut v = DVec3::AXES;
     for (row, column) in [(1, 0), (2, 0), (2, 1)] {
         a[column][row] = a[row][column];
     }
@@ -45,11 +45,9 @@ pub fn eigen(m: &DMat3) -> (DVec3, DMat3) {
             a[r][p] = c * arp - s * arq;
             a[r][q] = s * arp + c * arq;
             (a[p][r], a[q][r]) = (a[r][p], a[r][q]);
-            for k in 0..3 {
-                let (vp, vq) = (v[p][k], v[q][k]);
-                v[p][k] = c * vp - s * vq;
-                v[q][k] = s * vp + c * vq;
-            }
+            let (vp, vq) = (v[p], v[q]);
+            v[p] = vp * c - vq * s;
+            v[q] = vp * s + vq * c;
         }
         if !turned {
             break;
@@ -58,9 +56,7 @@ pub fn eigen(m: &DMat3) -> (DVec3, DMat3) {
     let mut order = [0, 1, 2];
     order.sort_by(|&i, &j| a[i][i].total_cmp(&a[j][j]));
     let [i, j, k] = order;
-    let column = |i: usize| DVec3::from_array(v[i]);
-    let (x, y) = (column(i), column(j));
-    let z = column(k);
+    let (x, y, z) = (v[i], v[j], v[k]);
     // A rotation, not a reflection.
     let z = if x.cross(y).dot(z) < 0.0 { -z } else { z };
     (

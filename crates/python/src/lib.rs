@@ -44,6 +44,8 @@ mod _core {
     #[pymodule_export]
     use super::material::Material;
     #[pymodule_export]
+    use super::profile::{Outline, lathe, prism};
+    #[pymodule_export]
     use super::queries::{Hits, Intersections};
     #[pymodule_export]
     use super::render::check_request;
@@ -57,6 +59,8 @@ mod _core {
 
     #[pymodule_export]
     use super::system::{cpu_features, default_threads};
+    #[pymodule_export]
+    use super::world::{method_name, methods};
 
     use pyo3::prelude::*;
 

@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use octray::geometry::mesh::MeshRule;
 use octray::geometry::{ConvexPolyhedron, ShapeError, SolidNode, TriangleMesh};
 use octray::math::{DAffine3, DVec3, transform};
 use pyo3::exceptions::{PyTypeError, PyValueError};

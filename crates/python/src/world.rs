@@ -30,6 +30,18 @@ pub(crate) fn accel_named(name: &str) -> PyResult<Accel> {
         .map_err(|error: AccelError| PyValueError::new_err(format!("accel: {error}")))
 }
 
+/// The names of all valid methods; a grid may also be given a number of voxels, as in `grid:64`.
+#[pyfunction]
+pub(crate) fn methods() -> Vec<String> {
+    Accel::all().iter().map(ToString::to_string).collect()
+}
+
+/// The full name of a method; refuses what is none.
+#[pyfunction]
+pub(crate) fn method_name(name: &str) -> PyResult<String> {
+    accel_named(name).map(|method| method.to_string())
+}
+
 /// How to build, with the limits that are given: the deepest level of the solids' tree, and the bytes
 /// that each tree may take.
 pub(crate) fn configured(

@@ -103,11 +103,19 @@ impl World {
         counters: &mut Counters,
     ) {
         let mut own = std::mem::take(&mut scratch.chords);
+        let mut line = *line;
         self.solids
-            .passages(line, &mut own.passages, scratch, counters);
+            .passages(&line, &mut own.passages, scratch, counters);
+        while let Some(first) = own.passages.first()
+            && self.starts_on(&line, first.s, first.face, first.entering)
+        {
+            line = line.beyond(first.s);
+            self.solids
+                .passages(&line, &mut own.passages, scratch, counters);
+        }
         self.solids
-            .unbounded_at_start(line, &mut own.held, scratch, counters);
-        collect(&self.solids, line, overlaps, &mut own, chords);
+            .unbounded_at_start(&line, &mut own.held, scratch, counters);
+        collect(&self.solids, &line, overlaps, &mut own, chords);
         scratch.chords = own;
     }
 
@@ -139,10 +147,11 @@ impl World {
         let crossed = ends.filter(|face| *face != FaceId::NONE).count() as u64;
         scratch.counted = chords;
         let mut sheets = 0;
-        self.sheets.visit_line(line, f64::INFINITY, counters, |_| {
-            sheets += 1;
-            f64::INFINITY
-        });
+        self.sheets
+            .visit_line(line, f64::INFINITY, counters, |hit| {
+                sheets += u64::from(!self.starts_on(line, hit.s, hit.face, hit.entering));
+                f64::INFINITY
+            });
         crossed + sheets
     }
 

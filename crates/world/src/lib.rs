@@ -13,6 +13,7 @@ mod line;
 mod query;
 mod sheets;
 mod solids;
+mod start;
 mod surfaces;
 mod world;
 

@@ -67,7 +67,8 @@ impl Place {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Line {
     pub(crate) ray: Ray,
-    /// Parameter of the query's origin; `-inf` where the whole line counts.
+    /// Parameter from which on the line counts: that of the query's origin, `-inf` where the whole
+    /// line does.
     pub(crate) origin: f64,
     /// Parameter of the query's end.
     pub(crate) end: f64,
@@ -121,14 +122,27 @@ impl Line {
         self
     }
 
-    /// The user's parameter. Never negative on a half-line: what counts lies after the origin, and
-    /// rounding must not say otherwise.
+    /// Parameter of the ray's start, wherever the line counts from.
+    pub(crate) fn start(&self) -> f64 {
+        -self.shift
+    }
+
+    /// The same half-line counting from `s` on, which is where its start lies.
+    pub(crate) const fn beyond(mut self, s: f64) -> Self {
+        self.origin = s;
+        self
+    }
+
+    /// The user's parameter. On a half-line it is 0 where that begins to count and never negative:
+    /// what counts lies after the origin, and rounding must not say otherwise.
     pub(crate) fn t(&self, s: f64) -> f64 {
         let t = (s + self.shift) / self.scale;
-        if self.origin.is_finite() {
-            t.max(0.0)
-        } else {
+        if !self.origin.is_finite() {
             t
+        } else if s <= self.origin {
+            0.0
+        } else {
+            t.max(0.0)
         }
     }
 }

@@ -182,16 +182,33 @@ impl World {
         scratch: &mut Scratch,
         counters: &mut Counters,
     ) -> Hit {
-        let Some(line) = self.line(query, false) else {
+        let Some(mut line) = self.line(query, false) else {
             return Hit::MISS;
         };
+        loop {
+            match self.nearest(&line, scratch, counters) {
+                None => return Hit::MISS,
+                Some(found) if self.starts_on(&line, found.s, found.face, found.entering) => {
+                    line = line.beyond(found.s);
+                }
+                Some(found) => return found.into_hit(&line),
+            }
+        }
+    }
+
+    fn nearest(
+        &self,
+        line: &Line,
+        scratch: &mut Scratch,
+        counters: &mut Counters,
+    ) -> Option<Interface> {
         let mut best: Option<Interface> = None;
         let nearer = |s: f64, face: FaceId, best: &Option<Interface>| {
             s < line.end && best.is_none_or(|b| s < b.s || (s == b.s && face < b.face))
         };
         let limit_of = |best: &Option<Interface>| best.map_or(f64::INFINITY, |b| b.s);
         self.solids
-            .sweep_line(&line, f64::INFINITY, scratch, counters, |change| {
+            .sweep_line(line, f64::INFINITY, scratch, counters, |change| {
                 if let Some(found) = change.interface()
                     && nearer(found.s, found.face, &best)
                 {
@@ -201,7 +218,7 @@ impl World {
             });
         let mut sheet: Option<SheetHit> = None;
         self.sheets
-            .visit_line(&line, limit_of(&best), counters, |found| {
+            .visit_line(line, limit_of(&best), counters, |found| {
                 let known = sheet.map_or(best, |hit| Some(Interface::of_sheet(&hit)));
                 if nearer(found.s, found.face, &known) {
                     sheet = Some(*found);
@@ -211,18 +228,17 @@ impl World {
         if let Some(hit) = sheet {
             // Which space a sheet stands in matters only where light bends or fades.
             let region = if self.has_transparency() {
-                self.solids.region_at(&line, hit.s, scratch, counters)
+                self.solids.region_at(line, hit.s, scratch, counters)
             } else {
                 Region::OUTSIDE
             };
-            return Interface {
+            best = Some(Interface {
                 from: region,
                 to: region,
                 ..Interface::of_sheet(&hit)
-            }
-            .into_hit(&line);
+            });
         }
-        best.map_or(Hit::MISS, |found| found.into_hit(&line))
+        best
     }
 
     /// Whether a surface that no light passes, of an object that casts shadows, lies on each ray;
@@ -253,8 +269,9 @@ impl World {
         };
         let found = Cell::new(false);
         // Returns the parameter beyond which nothing matters any more.
-        let visit = |s: f64, face: FaceId| {
-            found.set(found.get() || (s < line.end && counts(face)));
+        let visit = |s: f64, face: FaceId, entering: bool| {
+            let counts = s < line.end && counts(face) && !self.starts_on(&line, s, face, entering);
+            found.set(found.get() || counts);
             if found.get() {
                 f64::NEG_INFINITY
             } else {
@@ -262,13 +279,15 @@ impl World {
             }
         };
         self.sheets
-            .visit_line(&line, f64::INFINITY, counters, |hit| visit(hit.s, hit.face));
+            .visit_line(&line, f64::INFINITY, counters, |hit| {
+                visit(hit.s, hit.face, hit.entering)
+            });
         if !found.get() {
             self.solids
                 .sweep_line(&line, f64::INFINITY, scratch, counters, |change| {
                     change
                         .interface()
-                        .map_or(f64::INFINITY, |i| visit(i.s, i.face))
+                        .map_or(f64::INFINITY, |i| visit(i.s, i.face, i.entering))
                 });
         }
         found.get()
@@ -328,7 +347,11 @@ impl World {
         found.sort_by(|a, b| a.s.total_cmp(&b.s).then(a.face.cmp(&b.face)));
         // Cells overlap a little: what lies there was found twice.
         found.dedup_by_key(|f| (f.s, f.face));
-        hits.extend(found.into_iter().map(|f| f.into_hit(line)));
+        let behind = found
+            .iter()
+            .take_while(|f| self.starts_on(line, f.s, f.face, f.entering))
+            .count();
+        hits.extend(found.drain(behind..).map(|f| f.into_hit(line)));
     }
 
     /// The query's line in the coordinates of the scene, `None` for a ray that meets nothing because

@@ -525,9 +525,9 @@ fn concave_polyhedra_have_exact_planes() {
         .iter()
         .map(|f| f.iter().rev().copied().collect())
         .collect();
-    let turned = Solid::polyhedron(vertices.clone(), &turned).expect("closed");
+    let turned = Solid::polyhedron(&vertices, &turned).expect("closed");
     assert_same("turned L", &turned, &prism, 1e-14);
-    let open = Solid::polyhedron(vertices, &faces[1..]);
+    let open = Solid::polyhedron(&vertices, &faces[1..]);
     assert!(open.is_err(), "a face is missing");
 
     let (vertices, faces) = pit();

@@ -205,8 +205,29 @@ fn reduce_at(
     writer.close(&open)
 }
 
+/// What stands at a position of an expression.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Term {
+    /// A face.
+    Literal(FaceId),
+    /// All of the [`operands`].
+    And,
+    /// Any of the [`operands`].
+    Or,
+}
+
+/// The term at position `at`; the whole expression stands at 0.
+#[must_use]
+pub fn term(words: &[u32], at: usize) -> Term {
+    match words[at] & TAG_MASK {
+        LITERAL => Term::Literal(FaceId(words[at] >> TAG_BITS)),
+        AND => Term::And,
+        _ => Term::Or,
+    }
+}
+
 /// The positions of the operands of the operation at `at`.
-fn operands(words: &[u32], at: usize) -> impl Iterator<Item = usize> + '_ {
+pub fn operands(words: &[u32], at: usize) -> impl Iterator<Item = usize> + '_ {
     let body = body(words, at);
     let mut next = body.start;
     std::iter::from_fn(move || {

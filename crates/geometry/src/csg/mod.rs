@@ -12,5 +12,7 @@ mod lower;
 mod plane_index;
 mod sides;
 
-pub use code::{Code, Constant, changed_face, evaluate, faces, reduce, truth_on};
+pub use code::{
+    Code, Constant, Term, changed_face, evaluate, faces, operands, reduce, term, truth_on,
+};
 pub use lower::{Face, Lowered, Lowering, MeshOperand};

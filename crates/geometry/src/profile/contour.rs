@@ -124,7 +124,8 @@ pub(crate) fn changes(
     mut f: impl FnMut(f64) -> f64,
     mut visit: impl FnMut(f64),
 ) {
-    let (mut u0, mut f0) = (0.0, f(0.0));
+    let (at_0, at_1) = (f(0.0), f(1.0));
+    let (mut u0, mut f0) = (0.0, at_0);
     let mut piece = |u1: f64, f: &mut dyn FnMut(f64) -> f64| {
         let f1 = f(u1);
         if (f0 > 0.0) != (f1 > 0.0) {
@@ -132,6 +133,7 @@ pub(crate) fn changes(
         }
         (u0, f0) = (u1, f1);
     };
+    let separator = separator.with_signs(at_0 > 0.0, at_1 > 0.0);
     separator.separate(&mut |u| piece(u, &mut f));
     piece(1.0, &mut f);
 }

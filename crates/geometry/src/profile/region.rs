@@ -238,10 +238,9 @@ mod tests {
         ) {
             if let Ok(region) = Region::new(&outlines) {
                 prop_assert!(region.pieces.len() < 2000, "{}", region.pieces.len());
-                for made in [Solid::prism(&region, 0.0, 1.0), Solid::lathe(&region)] {
-                    if let Ok(solid) = made {
-                        prop_assert!(solid.bounds().is_bounded());
-                    }
+                let made = [Solid::prism(&region, 0.0, 1.0), Solid::lathe(&region)];
+                for solid in made.into_iter().flatten() {
+                    prop_assert!(solid.bounds().is_bounded());
                 }
             }
         }

@@ -167,27 +167,33 @@ impl Surface {
 
 impl Canonical {
     /// See [`Surface::crossings`]; the line in the local frame.
-    fn crossings(&self, origin: DVec3, direction: DVec3, mut visit: impl FnMut(f64)) -> bool {
+    #[inline]
+    fn crossings(&self, origin: DVec3, direction: DVec3, visit: impl FnMut(f64)) -> bool {
         let changes = match self {
             Self::Sphere => round::sphere(origin, direction),
             Self::Cylinder => round::cylinder(origin, direction),
             Self::Cone { slope } => cone::crossings(*slope, origin, direction),
             Self::Torus { minor } => torus::crossings(*minor, origin, direction),
             Self::Quadric(form) => quadric::crossings(*form, origin, direction),
-            Self::Polynomial(polynomial) => {
-                return polynomial::crossings(polynomial, origin, direction).report(visit);
-            }
-            Self::Superellipsoid { exponents } => {
-                return superellipsoid::crossings(*exponents, origin, direction).report(visit);
-            }
-            Self::Extrusion(contour) => {
-                return extrusion::crossings(contour, origin, direction, &mut visit);
-            }
-            Self::Revolution(contour) => {
-                return revolution::crossings(contour, origin, direction, &mut visit);
-            }
+            _ => return self.many_crossings(origin, direction, visit),
         };
         changes.report(visit)
+    }
+
+    /// Of the surfaces that may be crossed more than four times: apart, so that the function for
+    /// the common ones stays small.
+    #[inline(never)]
+    fn many_crossings(&self, o: DVec3, d: DVec3, mut visit: impl FnMut(f64)) -> bool {
+        match self {
+            Self::Polynomial(polynomial) => polynomial::crossings(polynomial, o, d).report(visit),
+            Self::Superellipsoid { exponents } => {
+                superellipsoid::crossings(*exponents, o, d).report(visit)
+            }
+            Self::Extrusion(contour) => extrusion::crossings(contour, o, d, &mut visit),
+            Self::Revolution(contour) => revolution::crossings(contour, o, d, &mut visit),
+            // The others are dealt with by the caller.
+            _ => false,
+        }
     }
 
     fn classify(&self, local: &LocalBox) -> Side {

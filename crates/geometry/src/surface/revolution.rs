@@ -125,6 +125,13 @@ struct Sight {
     above: [f64; 2],
 }
 
+impl Sight {
+    /// Between the two arms.
+    const fn is_between(&self) -> bool {
+        (self.above[0] > 0.0) != (self.above[1] > 0.0)
+    }
+}
+
 impl Flat {
     /// How far along, in both directions, the line is at this distance from the axis.
     fn half_chord(&self, r: f64) -> f64 {
@@ -160,7 +167,13 @@ impl Flat {
             .times(&beyond)
             .scaled(self.rise * self.rise)
             .minus(&level.times(&level));
-        let mut last = self.sight(curve, 0.0);
+        let (start, end) = (self.sight(curve, 0.0), self.sight(curve, 1.0));
+        // As the ends are seen, so must the separators have them.
+        let beyond = beyond.with_signs(start.is_far, end.is_far);
+        let is_above = |p: DVec2| self.across * (p.y - self.height) > 0.0;
+        let level = level.with_signs(is_above(curve.start()), is_above(curve.end()));
+        let arms = arms.with_signs(start.is_between(), end.is_between());
+        let mut last = start;
         let mut piece = |u: f64| {
             let next = self.sight(curve, u);
             self.between(curve, last, next, shift, found);
@@ -206,17 +219,20 @@ impl Flat {
             if (f0 > 0.0) != (f1 > 0.0) {
                 let height = |u: f64| self.above(curve.at(u))[arm];
                 let u = change_of_sign(height, from.u, to.u, f0, f1);
-                found.push(shift + self.parameter(curve.at(u), sign));
+                found.push(shift + self.parameter(curve, curve.at(u), sign));
             }
         }
     }
 
     /// From the nearest point: by the distance from the axis or by the height, whichever carries
     /// the smaller rounding error.
-    fn parameter(&self, p: DVec2, sign: f64) -> f64 {
+    fn parameter(&self, curve: &Curve, p: DVec2, sign: f64) -> f64 {
         let chord = self.half_chord(p.x);
         let by_chord = p.x * p.x / (chord * self.across);
-        let by_height = (p.y.abs() + self.height.abs()) / self.rise.abs();
+        // A height is as exact as the largest one it was mixed from.
+        let [low, high] = curve.bounds();
+        let size = low.y.abs().max(high.y.abs());
+        let by_height = (size + self.height.abs()) / self.rise.abs();
         if by_height < by_chord {
             let t = (p.y - self.height) / self.rise;
             // On its own arm.

@@ -248,7 +248,7 @@ pub(super) fn crossings(exponents: [f64; 2], o: DVec3, d: DVec3) -> SignChangeLi
     let p = o + unit * closest;
     let mut changes = SignChangeList::new(false);
     let span = Aabb::new(-DVec3::ONE, DVec3::ONE).clip(&Ray::new(p, unit));
-    if !(span.start < span.end) {
+    if span.is_empty() || span.start == span.end {
         return changes;
     }
     // Coordinate planes, in order.
@@ -264,7 +264,7 @@ pub(super) fn crossings(exponents: [f64; 2], o: DVec3, d: DVec3) -> SignChangeLi
     let mut low = outside(span.start);
     let mut left = MAX_SAMPLES;
     for (i, pair) in knots.windows(2).enumerate() {
-        if !(pair[0] < pair[1]) {
+        if pair[0] == pair[1] {
             continue;
         }
         let middle = p + unit * (0.5 * (pair[0] + pair[1]));

@@ -96,12 +96,21 @@ pub fn sign_changes(coefficients: &[f64]) -> SignChangeList {
     if degree == 0 {
         return SignChangeList::new(used[0] < 0.0);
     }
-    // A power of two: exact but for coefficients that are too small to matter.
-    let exponent = -libm::ilogb(largest);
+    // By a power of two, exact but for coefficients that are too small to matter, and only where
+    // sums could over- or underflow.
+    let exponent = if (1e-60..1e60).contains(&largest) {
+        0
+    } else {
+        -libm::ilogb(largest)
+    };
     let mut forward = [0.0; TERMS];
     let mut backward = [0.0; TERMS];
     for (k, &c) in used.iter().enumerate().take(degree + 1) {
-        forward[k] = libm::ldexp(c, exponent);
+        forward[k] = if exponent == 0 {
+            c
+        } else {
+            libm::ldexp(c, exponent)
+        };
         backward[k] = if k % 2 == 0 { forward[k] } else { -forward[k] };
     }
     let (forward, backward) = (&forward[..=degree], &backward[..=degree]);

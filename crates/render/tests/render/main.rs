@@ -2,7 +2,10 @@
 
 mod determinism;
 mod energy;
+mod eye;
+mod layers;
 mod limits;
 mod refraction;
 mod shadows;
+mod size;
 mod stage;

@@ -6,7 +6,7 @@ use octray_scene::{Background, Color, ColorStop, Material, Pattern, Pigment};
 use crate::stage::*;
 
 /// Black at `x = -50`, white at `x = 50`, shining.
-fn ruler() -> Material {
+pub(crate) fn ruler() -> Material {
     let stop = |position, v| ColorStop {
         position,
         color: Color::rgb(v, v, v),

@@ -6,6 +6,7 @@ mod leaf;
 mod numbering;
 mod prepare;
 mod roots;
+mod spans;
 mod sweep;
 mod volumes;
 
@@ -16,6 +17,7 @@ use octray_math::Interval;
 use octray_scene::ObjectId;
 use octray_tree::{CellTree, Node, Partition, PartitionStats};
 
+use leaf::LeafView;
 pub(crate) use leaf::Leaves;
 pub(crate) use roots::Scratch;
 use volumes::Volumes;
@@ -67,7 +69,19 @@ pub(crate) struct Solids {
     whole: Option<u32>,
     /// The ranks of the solids that hold every point: leaves know only the first of them.
     everywhere: Vec<u32>,
+    /// Whether any object has no end.
+    has_unbounded: bool,
     merged_surfaces: usize,
+}
+
+/// A leaf on a line.
+struct LeafVisit<'a> {
+    view: &'a LeafView<'a>,
+    /// The part of the line that counts in it.
+    span: Interval,
+    limit: f64,
+    scratch: &'a mut Scratch,
+    counters: &'a mut Counters,
 }
 
 impl Solids {
@@ -83,12 +97,43 @@ impl Solids {
         counters: &mut Counters,
         mut visit: impl FnMut(&Change<'_>) -> f64,
     ) {
+        self.visit_leaves(line, limit, scratch, counters, |leaf| {
+            self.sweep(line, leaf, &mut visit)
+        });
+    }
+
+    /// Visits the leaves on the line front to back, each with its part of the line; `visit` returns
+    /// the parameter beyond which nothing matters any more. Parts of neighbours overlap a little.
+    fn visit_leaves(
+        &self,
+        line: &Line,
+        limit: f64,
+        scratch: &mut Scratch,
+        counters: &mut Counters,
+        mut visit: impl FnMut(LeafVisit<'_>) -> f64,
+    ) {
         scratch.begin(self.surfaces.len() + self.meshes.len());
         let all = Interval::new(line.origin, line.end);
         if let Some(volumes) = &self.volumes {
-            self.sweep_volumes(volumes, line, all, limit, scratch, counters, &mut visit);
+            self.visit_volumes(volumes, line, all, limit, scratch, counters, &mut visit);
             return;
         }
+        let outer = self.outer.map(|leaf| self.leaves.get(leaf));
+        let visit_outer =
+            |part: Interval,
+             limit: f64,
+             scratch: &mut Scratch,
+             counters: &mut Counters,
+             visit: &mut dyn FnMut(LeafVisit<'_>) -> f64| match &outer {
+                Some(view) if part.start <= limit && !part.is_empty() => visit(LeafVisit {
+                    view,
+                    span: part,
+                    limit,
+                    scratch,
+                    counters,
+                }),
+                _ => limit,
+            };
         let in_cells = self.cells.as_ref().and_then(|cells| {
             let margin = cells.bounds().size().max_element() * (0.5 * CellTree::CONTENT_MARGIN);
             let span = cells
@@ -99,18 +144,23 @@ impl Solids {
             (!span.is_empty()).then_some((cells, span))
         });
         let Some((cells, span)) = in_cells else {
-            self.sweep_outer(line, all, limit, scratch, counters, &mut visit);
+            visit_outer(all, limit, scratch, counters, &mut visit);
             return;
         };
         // Outside the box all bounded objects are false, so the outer leaf is right there.
         let before = Interval::new(all.start, span.start);
-        let mut limit = self.sweep_outer(line, before, limit, scratch, counters, &mut visit);
+        let mut limit = visit_outer(before, limit, scratch, counters, &mut visit);
         let within = Interval::new(span.start, span.end.min(limit));
         if !within.is_empty() {
             let mut memory = std::mem::take(&mut scratch.walk);
-            let steps = cells.walk(&line.ray, within, &mut memory, |leaf, part| {
-                let view = self.leaves.get(leaf);
-                limit = self.sweep(line, &view, part, limit, scratch, counters, &mut visit);
+            let steps = cells.walk(&line.ray, within, &mut memory, |leaf, span| {
+                limit = visit(LeafVisit {
+                    view: &self.leaves.get(leaf),
+                    span,
+                    limit,
+                    scratch,
+                    counters,
+                });
                 limit
             });
             scratch.walk = memory;
@@ -118,25 +168,7 @@ impl Solids {
             counters.lookups += steps.lookups;
         }
         let after = Interval::new(span.end, all.end);
-        self.sweep_outer(line, after, limit, scratch, counters, &mut visit);
-    }
-
-    fn sweep_outer(
-        &self,
-        line: &Line,
-        part: Interval,
-        limit: f64,
-        scratch: &mut Scratch,
-        counters: &mut Counters,
-        visit: &mut impl FnMut(&Change<'_>) -> f64,
-    ) -> f64 {
-        match self.outer {
-            Some(leaf) if part.start <= limit && !part.is_empty() => {
-                let view = self.leaves.get(leaf);
-                self.sweep(line, &view, part, limit, scratch, counters, visit)
-            }
-            _ => limit,
-        }
+        visit_outer(after, limit, scratch, counters, &mut visit);
     }
 
     /// Every passage of the line into or out of a solid, in order of (parameter, rank), to `found`,
@@ -149,8 +181,15 @@ impl Solids {
         counters: &mut Counters,
     ) {
         found.clear();
-        self.sweep_line(line, f64::INFINITY, scratch, counters, |change| {
-            found.extend(change.passages());
+        self.visit_leaves(line, f64::INFINITY, scratch, counters, |leaf| {
+            let LeafVisit {
+                view,
+                span,
+                scratch,
+                counters,
+                ..
+            } = leaf;
+            self.leaf_passages(line, view, span, found, scratch, counters);
             f64::INFINITY
         });
         found.retain(|p| p.s < line.end);
@@ -168,7 +207,10 @@ impl Solids {
         counters: &mut Counters,
     ) {
         ranks.clear();
-        let Some(leaf) = self.outer else { return };
+        let Some(leaf) = self.outer.filter(|_| self.has_unbounded) else {
+            ranks.extend(&self.everywhere);
+            return;
+        };
         scratch.begin(self.surfaces.len() + self.meshes.len());
         self.solids_in(line, leaf, line.origin, ranks, scratch, counters);
         ranks.extend(&self.everywhere);

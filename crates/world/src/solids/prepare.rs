@@ -179,6 +179,7 @@ impl Solids {
         };
         let whole = whole.and_then(&mut leaf_of);
         let outer = leaf_of(outer);
+        let has_unbounded = object_bounds.iter().any(|b| !b.is_bounded());
         let leaves = Leaves::new(&contents);
         let priorities_differ = ranked
             .windows(2)
@@ -196,6 +197,7 @@ impl Solids {
             outer,
             whole,
             everywhere,
+            has_unbounded,
             merged_surfaces,
         })
     }

@@ -4,6 +4,7 @@
 use std::ops::Range;
 
 use super::Solids;
+use super::spans::Toggles;
 use super::sweep::Event;
 use super::volumes::VolumeHits;
 use crate::Counters;
@@ -66,6 +67,7 @@ pub(crate) struct Scratch {
     /// Which side of each surface the sweep is on.
     pub(super) negative: Vec<bool>,
     pub(super) events: Vec<Event>,
+    pub(super) toggles: Toggles,
     pub(super) inside: Vec<bool>,
     pub(super) inside_after: Vec<bool>,
     pub(super) walk: WalkMemory,

@@ -6,10 +6,9 @@
 
 use octray_geometry::FaceId;
 use octray_geometry::csg::{changed_face, evaluate};
-use octray_math::Interval;
 
 use super::leaf::{LeafObject, LeafView};
-use super::{Scratch, Solids};
+use super::{LeafVisit, Scratch, Solids};
 use crate::line::Line;
 use crate::{Counters, Region};
 
@@ -84,21 +83,6 @@ impl Change<'_> {
         Some(self.solids.triangle_face(face, self.group))
     }
 
-    /// Every solid that is entered or left, whether or not another one hides it.
-    pub(crate) fn passages(&self) -> impl Iterator<Item = Passage> {
-        self.changed().filter_map(|(index, object)| {
-            if self.solids.ranked[object.rank as usize].shell {
-                return None;
-            }
-            Some(Passage {
-                s: self.group[0].s,
-                rank: object.rank,
-                entering: self.after[index],
-                face: self.face(object)?,
-            })
-        })
-    }
-
     /// The boundary that is seen here, if any is.
     pub(crate) fn interface(&self) -> Option<Interface> {
         let Self { solids, view, .. } = self;
@@ -165,21 +149,20 @@ impl Change<'_> {
 }
 
 impl Solids {
-    /// Visits the changes in one leaf in `span`, in order, and returns the new limit.
-    #[expect(
-        clippy::too_many_arguments,
-        reason = "one hot function with its working memory"
-    )]
+    /// Visits the changes in one leaf, in order, and returns the new limit.
     pub(super) fn sweep(
         &self,
         line: &Line,
-        view: &LeafView<'_>,
-        span: Interval,
-        mut limit: f64,
-        scratch: &mut Scratch,
-        counters: &mut Counters,
+        leaf: LeafVisit<'_>,
         visit: &mut impl FnMut(&Change<'_>) -> f64,
     ) -> f64 {
+        let LeafVisit {
+            view,
+            span,
+            mut limit,
+            scratch,
+            counters,
+        } = leaf;
         scratch.events.clear();
         self.place(
             view,
@@ -349,13 +332,16 @@ impl Solids {
     /// A face of a mesh operand becomes that of the triangle which was crossed.
     fn triangle_face(&self, face: FaceId, group: &[Event]) -> FaceId {
         let surface = self.faces[face.0 as usize].surface.0;
-        let Some(mesh) = (surface as usize).checked_sub(self.surfaces.len()) else {
-            return face;
-        };
-        let triangle = group
-            .iter()
-            .find(|e| e.surface == surface)
-            .map_or(0, |e| e.triangle);
-        FaceId(self.meshes[mesh].first_face + triangle)
+        let crossed = group.iter().find(|e| e.surface == surface);
+        self.face_of_triangle(face, crossed.map_or(0, |e| e.triangle))
+    }
+
+    /// The triangle's face, for the literal of a mesh operand; any other face as it is.
+    pub(super) fn face_of_triangle(&self, face: FaceId, triangle: u32) -> FaceId {
+        let surface = self.faces[face.0 as usize].surface.0;
+        match (surface as usize).checked_sub(self.surfaces.len()) {
+            Some(mesh) => FaceId(self.meshes[mesh].first_face + triangle),
+            None => face,
+        }
     }
 }

@@ -5,7 +5,7 @@ use octray_math::{Aabb, DVec3, Interval, Ray};
 use octray_tree::CellTree;
 
 use super::leaf::LeafObject;
-use super::{Change, Scratch, Solids};
+use super::{LeafVisit, Scratch, Solids};
 use crate::Counters;
 use crate::line::Line;
 
@@ -70,20 +70,20 @@ impl Volume {
 }
 
 impl Solids {
-    /// Sweeps through the objects whose volumes the line meets.
+    /// Visits one leaf: the objects whose volumes the line meets.
     #[expect(
         clippy::too_many_arguments,
         reason = "one hot function with its working memory"
     )]
-    pub(super) fn sweep_volumes(
+    pub(super) fn visit_volumes(
         &self,
         volumes: &Volumes,
         line: &Line,
-        all: Interval,
+        span: Interval,
         limit: f64,
         scratch: &mut Scratch,
         counters: &mut Counters,
-        visit: &mut impl FnMut(&Change<'_>) -> f64,
+        visit: &mut impl FnMut(LeafVisit<'_>) -> f64,
     ) {
         let Some(leaf) = self.outer else { return };
         let whole = self.leaves.get(leaf);
@@ -93,10 +93,15 @@ impl Solids {
             mut surfaces,
         } = std::mem::take(&mut scratch.volume_hits);
         objects.clear();
-        let met = |o: &&LeafObject| volumes.0[o.rank as usize].meets(&line.ray, &all);
+        let met = |o: &&LeafObject| volumes.0[o.rank as usize].meets(&line.ray, &span);
         objects.extend(whole.objects.iter().filter(met));
-        let view = whole.only(&objects, &mut surfaces, &self.faces);
-        self.sweep(line, &view, all, limit, scratch, counters, visit);
+        visit(LeafVisit {
+            view: &whole.only(&objects, &mut surfaces, &self.faces),
+            span,
+            limit,
+            scratch,
+            counters,
+        });
         scratch.volume_hits = VolumeHits { objects, surfaces };
     }
 }

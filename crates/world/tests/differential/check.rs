@@ -77,11 +77,11 @@ pub(crate) fn check(subject: &Subject, ray: Ray, tally: &mut Tally) -> Result<()
     let hits = same(subject.crossings(ray, true))?;
     tally.crossings += hits.len() as u64;
     check_chain(&hits)?;
-    check_half_line(subject, ray, &hits)?;
+    let sight = Sight::new(&subject.oracle, ray);
+    check_half_line(subject, &sight, &hits)?;
     let objects = same(subject.chords(ray, Overlaps::Objects))?;
     let regions = same(subject.chords(ray, Overlaps::Regions))?;
     check_chords(subject, &objects)?;
-    let sight = Sight::new(&subject.oracle, ray);
     let engine = Engine {
         hits: &hits,
         objects: &objects,
@@ -153,13 +153,21 @@ fn check_chain(hits: &[Hit]) -> Result<(), Disagreement> {
     }
 }
 
-fn check_half_line(subject: &Subject, ray: Ray, whole: &[Hit]) -> Result<(), Disagreement> {
+/// The half-line is the part of the line ahead, without the crossing that the start lies on as far
+/// as anyone can tell.
+fn check_half_line(
+    subject: &Subject,
+    sight: &Sight<'_>,
+    whole: &[Hit],
+) -> Result<(), Disagreement> {
+    let ray = *sight.ray();
     let half = same(subject.crossings(ray, false))?;
+    let at_start = sight.parameter(sight.start_rounding());
     // A parameter may round to zero that is not.
     let tail = whole.len().checked_sub(half.len());
     let is_tail = tail.is_some_and(|at| {
         let (behind, ahead) = whole.split_at(at);
-        let ends = behind.last().is_none_or(|hit| hit.t <= 0.0);
+        let ends = behind.last().is_none_or(|hit| hit.t <= at_start);
         ends && ahead == half && half.first().is_none_or(|hit| hit.t >= 0.0)
     });
     if !is_tail {

@@ -112,7 +112,7 @@ fn ellipsoids() -> Vec<Solid> {
     ]
 }
 
-fn assemblies() -> Vec<(&'static str, Vec<Solid>)> {
+pub(crate) fn assemblies() -> Vec<(&'static str, Vec<Solid>)> {
     vec![
         ("bricks", bricks()),
         ("studs", studs()),
@@ -139,14 +139,14 @@ fn assemblies() -> Vec<(&'static str, Vec<Solid>)> {
 }
 
 /// The pieces one by one and together.
-struct Assembly {
+pub(crate) struct Assembly {
     pieces: Vec<Subject>,
     whole: Subject,
-    bounds: Aabb,
+    pub(crate) bounds: Aabb,
 }
 
 impl Assembly {
-    fn new(solids: &[Solid]) -> Self {
+    pub(crate) fn new(solids: &[Solid]) -> Self {
         let whole = Solid::union(solids.iter().cloned());
         Self {
             pieces: solids.iter().map(Subject::one).collect(),
@@ -156,7 +156,7 @@ impl Assembly {
     }
 
     /// `gap`: what counts as touching; the pieces alone are not given the same rounding.
-    fn check(&self, ray: octray_math::Ray, gap: f64) -> usize {
+    pub(crate) fn check(&self, ray: octray_math::Ray, gap: f64) -> usize {
         let alone = self.pieces.iter().flat_map(|piece| piece.intervals(ray));
         let expected = joined(alone.collect(), gap);
         let got = self.whole.intervals(ray);

@@ -17,10 +17,12 @@ mod draw;
 mod elliptic;
 mod menger;
 mod metamorphic;
+mod place;
 #[allow(dead_code, reason = "membership is the oracle of other tests")]
 #[path = "../random/mod.rs"]
 mod random;
 mod ray_grid;
+mod start;
 mod subject;
 mod volumes;
 mod voxels;

@@ -52,7 +52,7 @@ impl GridLine {
                 }));
             }
         }
-        crossings.sort_by(|a, b| order(a, b));
+        crossings.sort_by(order);
         crossings
     }
 

@@ -1,6 +1,6 @@
 //! Crossings lie on the surface, and the sides between them are those of the implicit function.
 
-use super::implicit_value;
+use super::{implicit, implicit_value};
 use crate::surface::{Canonical, Surface};
 use octray_math::DAffine3;
 use octray_math::{DVec3, Ray};
@@ -107,6 +107,38 @@ proptest! {
             let passed = changes.iter().filter(|&&c| c < t).count();
             let negative = starts_negative ^ (passed % 2 == 1);
             prop_assert!(value.abs() < 1e-9 || negative == (value < 0.0));
+        }
+    }
+
+    #[test]
+    fn sides_of_formulas_are_those_of_their_functions(
+        canonical in implicit(), o in vector(-2.0..2.0), d in vector(-1.0..1.0),
+        special in 0..6_usize, samples in proptest::collection::vec(-4.0..4.0f64, 60),
+    ) {
+        // Also lines along axes and in coordinate planes.
+        let (o, d) = match special {
+            0 => (o, DVec3::AXES[usize::from(o.x > 0.0)]),
+            1 => (o.with_z(0.0), d.with_z(0.0)),
+            2 => (DVec3::ZERO, d),
+            _ => (o, d),
+        };
+        prop_assume!(d.length() > 1e-3);
+        let d = d.normalize();
+        let ray = Ray::new(o, d);
+        let surface = local(canonical.clone());
+        let (starts_negative, changes) = crossings(&surface, &ray);
+        for t in samples {
+            let p = ray.at(t);
+            let value = implicit_value(&surface, p);
+            let doubt = match &canonical {
+                Canonical::Polynomial(polynomial) => 1e-13 * polynomial.majorant_value(p.abs() + 1.0),
+                // Steep where it is pinched.
+                Canonical::Superellipsoid { .. } if p.abs().min_element() < 1e-9 => 1e-2,
+                _ => 1e-9,
+            };
+            let passed = changes.iter().filter(|&&c| c < t).count();
+            let negative = starts_negative ^ (passed % 2 == 1);
+            prop_assert!(value.abs() < doubt || negative == (value < 0.0), "{} {:?}", t, changes);
         }
     }
 }

@@ -2,12 +2,14 @@
 
 mod aimed;
 mod classify;
+mod contours;
 mod crossings;
 mod double_double;
 mod tangent;
 
 use std::sync::Arc;
 
+use octray_math::roots::MAX_DEGREE;
 use octray_math::{DVec2, DVec3};
 use proptest::prelude::*;
 
@@ -29,7 +31,8 @@ const FORMS: [QuadricForm; 7] = [
 /// Any canonical surface that is neither sphere, cylinder, cone nor torus.
 fn implicit() -> impl Strategy<Value = Canonical> {
     let coefficient = prop_oneof![Just(0.0), -1.0..1.0f64, Just(1.0), -1e-3..1e-3f64];
-    let polynomial = (1..=6usize).prop_flat_map(move |degree| {
+    let degree = prop_oneof![9 => 1..=6usize, 1 => Just(MAX_DEGREE)];
+    let polynomial = degree.prop_flat_map(move |degree| {
         let count = powers(degree).count();
         proptest::collection::vec(coefficient.clone(), count).prop_map(move |c| {
             let polynomial = Polynomial::new(degree, &c).expect("valid");

@@ -84,6 +84,14 @@ impl<'a> Sight<'a> {
         ROUNDINGS * f64::EPSILON * self.far(t) + self.oracle.tolerance * away
     }
 
+    /// How far from its start a ray may cross a surface without anyone being able to tell that it
+    /// does not start on it: some rounding errors of its coordinates, at a flat angle.
+    pub(crate) fn start_rounding(&self) -> f64 {
+        let scene = &self.oracle.scene;
+        let away = self.ray.origin.distance(scene.origin) + scene.size;
+        2.0_f64.powi(-28) * (away + self.oracle.radius)
+    }
+
     /// Whether each object holds the point at `t`, by rank.
     pub(crate) fn answers(&self, t: f64, answers: &mut Vec<Answer>) {
         let (far, uncertainty) = (self.far(t), self.uncertainty(t));
