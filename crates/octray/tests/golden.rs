@@ -80,6 +80,11 @@ fn hello_is_the_same_everywhere() {
 }
 
 #[test]
+fn the_glass_is_the_same_everywhere() {
+    check("glass/glass.pov", true);
+}
+
+#[test]
 fn the_coupling_is_the_same_everywhere() {
     check("coupling/coupling.csg", true);
 }

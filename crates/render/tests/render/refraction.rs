@@ -108,6 +108,37 @@ fn light_in_a_medium_fades_with_its_length() {
 }
 
 #[test]
+fn a_fade_weakens_light_by_its_own_law() {
+    // What is left after 2.5 units: colour + (1 - colour) / (1 + (2.5 / 2)^3), or exponentially.
+    let way = 2.0 / 0.8;
+    for (power, left) in [
+        (3.0, 1.0 / (1.0 + f64::powi(way / 2.0, 3))),
+        (1001.0, f64::exp(-way / 2.0)),
+    ] {
+        let mut murky = veil(DVec3::ONE);
+        murky.interior.fade = Some(octray_scene::Fade {
+            half_distance: 2.0,
+            power,
+            color: DVec3::new(0.25, 1.0, 0.0),
+        });
+        murky.interior.absorption = DVec3::new(0.1, 0.0, 0.0);
+        let world = Stage::new()
+            .solid(slab(0.0, 2.0), murky)
+            .background(1.0)
+            .parallel(DVec3::new(0.0, 0.0, 5.0), DVec3::new(0.6, 0.0, -0.8), 0.1)
+            .world();
+        let rendering = shoot(&world, &small());
+        let expected = (0.25 + 0.75 * left) * f64::exp(-0.1 * way);
+        assert_all_near(&rendering, expected, 1e-6);
+        let seen = rendering.film.mean(3, 3);
+        assert!(
+            (seen.y - 1.0).abs() < 1e-7 && (seen.z - left).abs() < 1e-6,
+            "{seen}"
+        );
+    }
+}
+
+#[test]
 fn a_ball_of_glass_turns_the_world_upside_down() {
     let mut stage = Stage::new().solid(ball(DVec3::ZERO, 1.0), clear(1.5));
     let stop = |position, v| ColorStop {
