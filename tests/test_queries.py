@@ -100,7 +100,7 @@ def test_every_method_gives_the_same_bits() -> None:
     rays = random_rays(3000)
     one = scene.cast_rays(rays, accel="brute", threads=1)
     for accel, threads in (("auto", 1), ("auto", 4), ("brute", 3)):
-        other = scene.cast_rays(rays, accel=accel, threads=threads)  # type: ignore[arg-type]
+        other = scene.cast_rays(rays, accel=accel, threads=threads)
         for name in ("t", "object_id", "face_id", "normal", "position"):
             assert getattr(one, name).tobytes() == getattr(other, name).tobytes(), name
     assert 0.2 < one.hit.mean() < 1

@@ -34,7 +34,7 @@ def test_the_python_examples_run_in_order(tmp_path: Path, monkeypatch: pytest.Mo
         for example in examples
         for match in re.finditer(r"print\(.*# (\[[^\]]*\])", example)
     ]
-    assert len(claims) == 2
+    assert len(claims) == 3
     for line, claim in zip(lines, claims, strict=False):
         assert line.strip("[]").split() == claim.strip("[]").split()
 

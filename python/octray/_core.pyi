@@ -41,6 +41,8 @@ __all__ = [
     "lathe",
     "load",
     "mesh_solid",
+    "method_name",
+    "methods",
     "polyhedron",
     "polynomial",
     "prism",

@@ -70,13 +70,11 @@ impl SceneFrame {
 /// The box that decides on the frame of a scene: `bounded` holds its bounded objects, and each of
 /// `unbounded` adds its bounded primitives, because they are as large as its coordinates are. Where
 /// there is nothing bounded at all, the unbounded primitives add the points they are given by.
-pub fn finite_box<'a>(
-    bounded: Aabb,
-    unbounded: impl IntoIterator<Item = &'a Solid> + Clone,
-) -> Aabb {
+#[must_use]
+pub fn finite_box(bounded: Aabb, unbounded: &[&Solid]) -> Aabb {
     let add = |anchors: bool| {
         let mut all = bounded;
-        for solid in unbounded.clone() {
+        for solid in unbounded {
             add_primitives(solid, &DAffine3::IDENTITY, anchors, &mut all);
         }
         all
@@ -134,9 +132,9 @@ mod tests {
         let far = ball.translate(DVec3::X * 1e9).expect("finite");
         let hollow = Solid::difference([floor.clone(), far]);
         let unit = Aabb::new(-DVec3::ONE, DVec3::ONE);
-        assert_eq!(finite_box(unit, [&floor]), unit);
-        assert_eq!(finite_box(unit, [&hollow]).max.x, 1.3e9);
-        let only = finite_box(Aabb::EMPTY, [&floor]);
+        assert_eq!(finite_box(unit, &[&floor]), unit);
+        assert_eq!(finite_box(unit, &[&hollow]).max.x, 1.3e9);
+        let only = finite_box(Aabb::EMPTY, &[&floor]);
         assert_eq!(only, Aabb::from_points([DVec3::Z * -1e9]));
     }
 

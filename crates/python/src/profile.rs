@@ -45,7 +45,10 @@ impl Outline {
 
     /// A circle.
     #[staticmethod]
-    #[pyo3(signature = (r, center = (0.0, 0.0)))]
+    #[pyo3(
+        signature = (r, center = (0.0, 0.0)),
+        text_signature = "(r, center=(0.0, 0.0))"
+    )]
     fn circle(r: f64, center: Pair) -> PyResult<Self> {
         if !(r > 0.0 && r.is_finite()) {
             let message = format!("radius must be greater than 0 and finite, not {r}");

@@ -29,7 +29,7 @@ impl Place {
             let unbounded = !bounds.is_empty() && !bounds.is_bounded();
             solids.into_iter().flatten().filter(move |_| unbounded)
         });
-        let bounds = finite_box(scene.bounds(), solids);
+        let bounds = finite_box(scene.bounds(), &solids.collect::<Vec<_>>());
         let frame = SceneFrame::new(&bounds);
         let center = if bounds.is_empty() || !bounds.is_bounded() {
             DVec3::ZERO

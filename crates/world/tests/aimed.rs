@@ -30,8 +30,11 @@ fn quartic([major, minor]: [f64; 2]) -> Solid {
     Solid::polynomial(polynomial).expect("valid")
 }
 
+/// A point inside, from random numbers by their index.
+type Inside = fn(&dyn Fn(u64) -> f64) -> DVec3;
+
 /// Solids of about unit size, and a point inside each for a key.
-fn solids() -> Vec<(Solid, fn(&dyn Fn(u64) -> f64) -> DVec3)> {
+fn solids() -> Vec<(Solid, Inside)> {
     fn in_torus([major, minor]: [f64; 2], u: &dyn Fn(u64) -> f64) -> DVec3 {
         let (s, c) = libm::sincos(TAU * u(0));
         let (ts, tc) = libm::sincos(TAU * u(1));

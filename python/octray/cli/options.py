@@ -15,12 +15,11 @@ if TYPE_CHECKING:
 Crop = tuple[int, int, int, int]
 
 
-
 def parse_method(_ctx: click.Context, _param: click.Parameter, value: str) -> str:
-    """The name of a method; only the core knows them all."""
+    """Look a method up; only the core knows them all."""
     if value == "auto":
         return value
-    from octray._core import method_name  # noqa: PLC0415 - not for --help
+    from octray._core import method_name
 
     try:
         return method_name(value)

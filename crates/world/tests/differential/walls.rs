@@ -64,7 +64,11 @@ pub(crate) fn check_skins(
     let far = ray.origin.length().max(sight.center().length());
     // Nor where they only touch, which looks the same in space that is squashed.
     let squashed = subject.oracle.worst_condition() > 100.0;
-    if subject.is_delicate || squashed || far > 64.0 * subject.oracle.scene_size() {
+    if subject.is_delicate
+        || squashed
+        || subject.oracle.may_osculate()
+        || far > 64.0 * subject.oracle.scene_size()
+    {
         return Ok(());
     }
     for pair in hits.windows(2) {

@@ -144,7 +144,7 @@ impl Oracle {
                 _ => None,
             }
         });
-        let frame = SceneFrame::new(&finite_box(scene.bounds(), unbounded));
+        let frame = SceneFrame::new(&finite_box(scene.bounds(), &unbounded.collect::<Vec<_>>()));
         Self {
             leaves,
             owners,
@@ -169,6 +169,15 @@ impl Oracle {
     pub(crate) fn worst_condition(&self) -> f64 {
         let leaves = self.leaves.iter();
         leaves.fold(1.0, |worst, leaf| leaf.frame.condition.max(worst))
+    }
+
+    /// Whether a boundary may touch others so closely that they are one over a stretch, as far as
+    /// the tolerance tells: the poles of superellipsoids are flat, to any order.
+    pub(crate) fn may_osculate(&self) -> bool {
+        let is_smooth = |leaf: &Leaf| {
+            matches!(leaf.primitive, Primitive::Superellipsoid { .. }) || leaf.terms.is_some()
+        };
+        self.leaves.iter().any(is_smooth)
     }
 
     /// The primitives, each with where it is, rounded.
