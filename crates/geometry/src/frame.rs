@@ -70,10 +70,7 @@ impl SceneFrame {
 /// The box that decides on the frame of a scene: `bounded` holds its bounded objects, and each of
 /// `unbounded` adds its bounded primitives, because they are as large as its coordinates are. Where
 /// there is nothing bounded at all, the unbounded primitives add the points they are given by.
-pub fn finite_box<'a>(
-    bounded: Aabb,
-    unbounded: impl IntoIterator<Item = &'a Solid> + Clone,
-) -> Aabb {
+pub fn finite_box<'a>(bounded: Aabb, unbounded: impl Iterator<Item = &'a Solid> + Clone) -> Aabb {
     let add = |anchors: bool| {
         let mut all = bounded;
         for solid in unbounded.clone() {
