@@ -3,7 +3,7 @@
 //!
 //! The surface a ray starts on is behind it, like that of a [`crate::Departure`]. Whether a start
 //! lies on a surface can be told only up to the rounding of its own coordinates, so a boundary
-//! counts as behind whose plane is within that of the start. Where the ray grazes a surface it
+//! counts as behind that is no farther from the start than that. Where the ray grazes a surface it
 //! cannot be told at all; there the parameter decides, as it does everywhere else.
 
 use octray_geometry::FaceId;
@@ -29,6 +29,9 @@ impl World {
             || !line.origin.is_finite()
         {
             return false;
+        }
+        if ahead <= rounding {
+            return true;
         }
         let start = line.ray.at(line.start());
         let normal = self.normal_of(line, face, entering, start);
