@@ -1,40 +1,17 @@
 //! Chords against point membership: of one object, and of what priorities and regions leave of it.
 
+mod parts;
 mod random;
-
-use std::sync::Arc;
 
 use octray_geometry::{FaceId, Solid};
 use octray_math::{DVec3, Ray};
-use octray_scene::{Material, Object, ObjectId, SceneBuilder};
-use octray_world::{
-    Accel, Chord, Counters, Criteria, Hit, Overlaps, RayQuery, Region, World, WorldConfig,
-};
+use octray_scene::ObjectId;
+use octray_world::{Accel, Chord, Counters, Hit, Overlaps, RayQuery, Region, World};
+use parts::world;
 use proptest::prelude::*;
 use random::{Model, model, point};
 
 const ALL: [Overlaps; 3] = [Overlaps::Regions, Overlaps::Priorities, Overlaps::Objects];
-
-fn world(solids: &[(Solid, i32)], accel: Accel) -> World {
-    let mut builder = SceneBuilder::new();
-    let material = builder.add_material(Material::default());
-    for (solid, priority) in solids {
-        builder.add_object(Object {
-            priority: *priority,
-            ..Object::solid("part", solid.clone(), material)
-        });
-    }
-    let config = WorldConfig {
-        accel,
-        criteria: Criteria {
-            max_depth: 7,
-            visit_cost: 0.1,
-            ..Criteria::default()
-        },
-        ..WorldConfig::default()
-    };
-    World::prepare(Arc::new(builder.build().expect("valid")), &config).expect("no meshes")
-}
 
 fn chords(world: &World, ray: Ray, whole: bool, overlaps: Overlaps) -> Vec<Chord> {
     let mut chords = Vec::new();

@@ -1,42 +1,14 @@
 //! One suite for every method: each answers every query as brute force does, to the bit.
 
+mod parts;
 mod random;
-
-use std::sync::Arc;
 
 use octray_geometry::Solid;
 use octray_math::{DVec3, Ray};
-use octray_scene::{Material, Object, Scene, SceneBuilder};
-use octray_world::{
-    Accel, Chord, Counters, Criteria, Hit, Overlaps, RayQuery, Region, World, WorldConfig,
-};
+use octray_world::{Accel, Chord, Counters, Hit, Overlaps, RayQuery, Region, World};
+use parts::world;
 use proptest::prelude::*;
 use random::{model, point};
-
-fn scene(solids: &[(Solid, i32)]) -> Arc<Scene> {
-    let mut builder = SceneBuilder::new();
-    let material = builder.add_material(Material::default());
-    for (solid, priority) in solids {
-        builder.add_object(Object {
-            priority: *priority,
-            ..Object::solid("part", solid.clone(), material)
-        });
-    }
-    Arc::new(builder.build().expect("valid"))
-}
-
-fn world(scene: &Arc<Scene>, accel: Accel) -> World {
-    let config = WorldConfig {
-        accel,
-        criteria: Criteria {
-            max_depth: 7,
-            visit_cost: 0.1,
-            ..Criteria::default()
-        },
-        ..WorldConfig::default()
-    };
-    World::prepare(Arc::clone(scene), &config).expect("no meshes")
-}
 
 /// Every method, and grids of other sizes.
 fn methods() -> Vec<Accel> {
@@ -104,10 +76,9 @@ fn answers(world: &World, rays: &[Ray]) -> Answers {
 
 /// The answers that all methods agree on.
 fn conform(solids: &[(Solid, i32)], rays: &[Ray]) -> Answers {
-    let scene = scene(solids);
-    let expected = answers(&world(&scene, Accel::Brute), rays);
+    let expected = answers(&world(solids, Accel::Brute), rays);
     for method in methods() {
-        assert_eq!(answers(&world(&scene, method), rays), expected, "{method}");
+        assert_eq!(answers(&world(solids, method), rays), expected, "{method}");
     }
     expected
 }

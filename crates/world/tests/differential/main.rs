@@ -123,13 +123,13 @@ fn a_displaced_engine_is_noticed() {
 /// own scene, but by far less than that of the oracle's, which has a large box in the distance.
 #[test]
 fn a_skin_is_noticed() {
-    let small = "(box 0 0 0 0.0625 0.0625 0.0625)";
-    let gap = 2.0_f64.powi(-40);
-    let beside = format!("(box {:?} 0 0 0.125 0.0625 0.0625)", 0.0625 + gap);
+    let small = "(box 0 0 0 4 4 4)";
+    let gap = 2.0_f64.powi(-36);
+    let beside = format!("(box {:?} 0 0 8 4 4)", 4.0 + gap);
     let large = "(box -1000 -1000 -1000 -900 -900 -900)";
     let scene = |boxes: &str| {
         read_case(&parse(&format!(
-            "(case (object 0 (union {boxes})) (ray -1 0.03 0.02 1 0 0))"
+            "(case (object 0 (union {boxes})) (ray -1 2 1.5 1 0 0))"
         )))
     };
     let oracle = scene(&format!("{small} {beside} {large}"));

@@ -78,7 +78,7 @@ pub(crate) fn check_skins(
         let along = ray.direction.normalize();
         let aside = along.any_orthonormal_vector();
         let across = along.cross(aside);
-        let step = subject.oracle.scene_size() * 2.0_f64.powi(-19);
+        let step = subject.oracle.scene_size() * 2.0_f64.powi(-14);
         let neighbours = (0..8).filter(|i| {
             let (sin, cos) = libm::sincos(f64::from(*i) * 0.8 + 0.1);
             let offset: DVec3 = (aside * cos + across * sin) * (step * (1.0 + f64::from(*i)));

@@ -81,7 +81,9 @@ impl<'a> Sight<'a> {
     pub(crate) fn uncertainty(&self, t: f64) -> f64 {
         let scene = &self.oracle.scene;
         let away = self.ray.at(t).distance(scene.origin).max(scene.size);
-        ROUNDINGS * f64::EPSILON * self.far(t) + self.oracle.tolerance * away
+        let rounding = ROUNDINGS * f64::EPSILON * self.far(t);
+        // Subnormal coordinates have few digits or none.
+        rounding + self.oracle.tolerance * away + 1e-290
     }
 
     /// How far from its start a ray may cross a surface without anyone being able to tell that it
