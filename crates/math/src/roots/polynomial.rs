@@ -127,6 +127,9 @@ pub fn sign_changes(coefficients: &[f64]) -> SignChangeList {
     piece.iter().for_each(|s| changes.push(-1.0 / s));
     let piece = on_unit_interval(backward, forward[0] < 0.0, at_minus_one);
     piece.iter().rev().for_each(|s| changes.push(-s));
+    // Of roots that are so far away that numbers fail, one of a pair may be lost. The sign here is
+    // certain: where the line comes from follows from it.
+    changes.starts_negative = (forward[0] < 0.0) != (changes.count % 2 == 1);
     let piece = on_unit_interval(forward, forward[0] < 0.0, at_one);
     piece.iter().for_each(|&s| changes.push(s));
     reverse(forward, reversed);
@@ -255,6 +258,19 @@ fn descartes(coefficients: &[f64]) -> Option<usize> {
 mod tests {
     use super::*;
     use proptest::prelude::*;
+
+    #[test]
+    fn roots_at_the_end_of_the_world_do_not_change_the_sign_nearby() {
+        // Negative at 0, with changes at about -6.5e16 and 1.4e-17 / last.
+        for last in [-1e-30, -1e-40, -1e-60, -2.3e-83, -1e-120, -1e-300] {
+            let changes = sign_changes(&[-0.68, -0.97, -0.91, -1.4e-17, last]);
+            let passed = changes.as_slice().iter().filter(|t| **t < 0.0).count();
+            assert!(
+                changes.starts_negative != (passed % 2 == 1),
+                "{last} {changes:?}"
+            );
+        }
+    }
 
     /// The coefficients of the polynomial with these roots.
     fn product(roots: &[f64]) -> Vec<f64> {
