@@ -41,12 +41,7 @@ pub(crate) fn polyhedron(vertices: &[DVec3], faces: &[Vec<u32>]) -> Result<Compo
     let mut parts = Vec::new();
     let mut triangulator = Triangulator::new();
     for face in faces {
-        let corners: Option<Vec<DVec3>> = face
-            .iter()
-            .map(|&i| vertices.get(i as usize).copied())
-            .collect();
-        let corners =
-            corners.ok_or(ShapeError::BadPolyhedron("using a corner it does not have"))?;
+        let corners = corners_of(face, vertices)?;
         let (normal, point) = plane_of(&corners, tolerance)?;
         let plane = planes.len();
         planes.push((normal, point));
@@ -95,6 +90,16 @@ pub(crate) fn polyhedron(vertices: &[DVec3], faces: &[Vec<u32>]) -> Result<Compo
     Composite::new(CompositeKind::Polyhedron, faces, formula, bounds)
 }
 
+/// Where the corners of a face are.
+///
+/// # Errors
+/// An index is out of range.
+pub(crate) fn corners_of(face: &[u32], vertices: &[DVec3]) -> Result<Vec<DVec3>, ShapeError> {
+    let corner = |&i: &u32| vertices.get(i as usize).copied();
+    let corners: Option<Vec<DVec3>> = face.iter().map(corner).collect();
+    corners.ok_or(ShapeError::BadPolyhedron("using a corner it does not have"))
+}
+
 /// The triangles of the faces.
 ///
 /// # Errors
@@ -106,12 +111,7 @@ pub(crate) fn triangulated(
     let mut triangulator = Triangulator::new();
     let mut triangles = Vec::new();
     for face in faces {
-        let corners: Option<Vec<DVec3>> = face
-            .iter()
-            .map(|&i| vertices.get(i as usize).copied())
-            .collect();
-        let corners =
-            corners.ok_or(ShapeError::BadPolyhedron("using a corner it does not have"))?;
+        let corners = corners_of(face, &vertices)?;
         let local = triangulator
             .triangulate(&corners)
             .map_err(|_| ShapeError::BadPolyhedron("too intricate"))?;

@@ -8,6 +8,7 @@ use thiserror::Error;
 use crate::Polynomial;
 use crate::composite::Composite;
 use crate::mesh::{MeshError, TriangleMesh};
+use crate::polyhedron::corners_of;
 use crate::surface::QuadricForm;
 
 /// Why a shape cannot be made.
@@ -173,10 +174,7 @@ impl ConvexPolyhedron {
         let center = vertices.iter().sum::<DVec3>() / vertices.len() as f64;
         let mut planes = Vec::with_capacity(faces.len());
         for face in faces {
-            let corner = |&i: &u32| vertices.get(i as usize).copied();
-            let corners: Option<Vec<DVec3>> = face.iter().map(corner).collect();
-            let corners =
-                corners.ok_or(ShapeError::BadPolyhedron("using a corner it does not have"))?;
+            let corners = corners_of(face, &vertices)?;
             // Newell's normal: right for any polygon, exact for axis-aligned ones.
             let mut normal = DVec3::ZERO;
             for (a, b) in corners.iter().zip(corners.iter().cycle().skip(1)) {

@@ -99,7 +99,7 @@ impl Line {
         }
         // Powers of two: exact, except for directions so small that they have few digits anyway.
         let (direction, scale) = scaled(direction, largest);
-        let unit = Ray::new(origin - place.frame.origin, direction);
+        let unit = Ray::new(place.scene_from_world(origin), direction);
         let shift = place.short(unit.closest_approach(place.center));
         let ray = unit.shifted(shift);
         if !(ray.origin.is_finite() && scale > 0.0) {

@@ -195,7 +195,8 @@ impl Solids {
             for event in group {
                 negative[event.surface as usize] ^= true;
             }
-            if self.changes(view, negative, inside, inside_after) {
+            self.memberships(view, negative, inside_after);
+            if inside != inside_after {
                 limit = limit.min(visit(&Change {
                     solids: self,
                     view,
@@ -254,25 +255,6 @@ impl Solids {
             let truth = |face| self.truth(negative, face);
             inside.push(evaluate(view.expression(object), &truth));
         }
-    }
-
-    /// The same as `memberships`, to `after`; whether it differs from `before`.
-    fn changes(
-        &self,
-        view: &LeafView<'_>,
-        negative: &[bool],
-        before: &[bool],
-        after: &mut Vec<bool>,
-    ) -> bool {
-        let mut changed = false;
-        after.clear();
-        for (object, before) in view.objects.iter().zip(before) {
-            let truth = |face| self.truth(negative, face);
-            let now = evaluate(view.expression(object), &truth);
-            changed |= now != *before;
-            after.push(now);
-        }
-        changed
     }
 
     /// The region, given which of the leaf's objects one is in.
