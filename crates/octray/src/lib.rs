@@ -49,7 +49,7 @@
 //! ```
 //!
 //! Ask it where rays go, and render it. Both give the same bits for any number of threads and for
-//! any [`world::Accel`]:
+//! any [`world::Method`]:
 //!
 //! ```
 //! # use octray::geometry::Solid;

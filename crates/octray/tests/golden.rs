@@ -9,11 +9,11 @@ use std::sync::Arc;
 
 use octray::import::{Disk, Options, load};
 use octray::render::{RenderConfig, encode_png, render};
-use octray::world::{Accel, World, WorldConfig};
+use octray::world::{Method, World, WorldConfig};
 
 const SIZE: (u32, u32) = (256, 144);
 
-fn picture(path: &Path, accel: Accel, threads: usize) -> Vec<u8> {
+fn picture(path: &Path, method: Method, threads: usize) -> Vec<u8> {
     let imported = load(path, &Disk, &Options::default());
     assert_eq!(
         imported.diagnostics.iter().count(),
@@ -29,7 +29,7 @@ fn picture(path: &Path, accel: Accel, threads: usize) -> Vec<u8> {
         .expect("threads");
     pool.install(|| {
         let config = WorldConfig {
-            accel,
+            method,
             ..WorldConfig::default()
         };
         let world = World::prepare(scene, &config).expect("a world");
@@ -47,14 +47,14 @@ fn check(scene: &str, brute: bool) {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes");
     let path = root.join(scene);
     let expected_path = path.with_file_name("expected.png");
-    let one = picture(&path, Accel::Auto, 1);
+    let one = picture(&path, Method::Auto, 1);
     assert!(
-        one == picture(&path, Accel::Auto, 4),
+        one == picture(&path, Method::Auto, 4),
         "{scene}: threads change the picture"
     );
     if brute {
         assert!(
-            one == picture(&path, Accel::Brute, 4),
+            one == picture(&path, Method::Brute, 4),
             "{scene}: brute force differs"
         );
     }

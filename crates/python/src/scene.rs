@@ -4,7 +4,7 @@ use numpy::PyArrayDyn;
 use octray::geometry::Sheet;
 use octray::import::dress;
 use octray::scene::{self, SceneBuilder, SceneError, Settings, Shape};
-use octray::world::Accel;
+use octray::world::Method;
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
@@ -69,8 +69,8 @@ impl Scene {
         self.revision
     }
 
-    pub(crate) fn prepared(&self, accel: Accel) -> Option<&Prepared> {
-        self.prepared.as_ref().filter(|p| p.accel == accel)
+    pub(crate) fn prepared(&self, method: Method) -> Option<&Prepared> {
+        self.prepared.as_ref().filter(|p| p.method == method)
     }
 
     pub(crate) fn keep(&mut self, prepared: Prepared) {

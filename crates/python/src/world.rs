@@ -7,7 +7,7 @@ use octray::import::dress;
 use octray::math::MAX_DEPTH;
 use octray::math::{Aabb, DVec3};
 use octray::scene;
-use octray::world::{Accel, AccelError, World, WorldConfig};
+use octray::world::{Method, MethodError, World, WorldConfig};
 use pyo3::exceptions::{PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
 
@@ -20,26 +20,26 @@ use crate::task;
 #[derive(Clone, Debug)]
 pub(crate) struct Prepared {
     pub(crate) world: Arc<World>,
-    pub(crate) accel: Accel,
+    pub(crate) method: Method,
     pub(crate) duration: Duration,
 }
 
 /// The method of this name.
-pub(crate) fn accel_named(name: &str) -> PyResult<Accel> {
+pub(crate) fn method_called(name: &str) -> PyResult<Method> {
     name.parse()
-        .map_err(|error: AccelError| PyValueError::new_err(format!("accel: {error}")))
+        .map_err(|error: MethodError| PyValueError::new_err(format!("accel: {error}")))
 }
 
 /// The names of all valid methods; a grid may also be given a number of voxels, as in `grid:64`.
 #[pyfunction]
 pub(crate) fn methods() -> Vec<String> {
-    Accel::all().iter().map(ToString::to_string).collect()
+    Method::all().iter().map(ToString::to_string).collect()
 }
 
 /// The full name of a method; refuses what is none.
 #[pyfunction]
 pub(crate) fn method_name(name: &str) -> PyResult<String> {
-    accel_named(name).map(|method| method.to_string())
+    method_called(name).map(|method| method.to_string())
 }
 
 /// How to build, with the limits that are given: the deepest level of the solids' tree, and the bytes
@@ -50,7 +50,7 @@ pub(crate) fn configured(
     tree_memory: Option<u64>,
 ) -> PyResult<WorldConfig> {
     let mut config = WorldConfig {
-        accel: accel_named(accel)?,
+        method: method_called(accel)?,
         ..WorldConfig::default()
     };
     if let Some(depth) = tree_depth {
@@ -75,10 +75,10 @@ pub(crate) fn prepared(
     threads: Option<usize>,
 ) -> PyResult<Prepared> {
     let config = WorldConfig {
-        accel: accel_named(accel)?,
+        method: method_called(accel)?,
         ..WorldConfig::default()
     };
-    let known = scene.try_borrow()?.prepared(config.accel).cloned();
+    let known = scene.try_borrow()?.prepared(config.method).cloned();
     known.map_or_else(|| prepare(scene, config, threads), Ok)
 }
 
@@ -89,7 +89,7 @@ pub(crate) fn prepare(
     threads: Option<usize>,
 ) -> PyResult<Prepared> {
     let py = scene.py();
-    let accel = config.accel;
+    let method = config.method;
     let pool = pool(threads)?;
     let (plain, revision) = {
         let scene = scene.try_borrow()?;
@@ -103,7 +103,7 @@ pub(crate) fn prepare(
     let world = world.map_err(|error| invalid_scene(py, &[error]))?;
     let prepared = Prepared {
         world: Arc::new(world),
-        accel,
+        method,
         duration: start.elapsed(),
     };
     let mut scene = scene

@@ -30,6 +30,8 @@ pub enum Traversal {
     FujimotoIwata,
     /// [`LeafSearch::walk_units`].
     Sung,
+    /// Neighbouring rays together; a ray alone as with [`Traversal::Ordered`].
+    Beam,
 }
 
 /// How space is divided.
@@ -54,6 +56,9 @@ impl Division {
         match self {
             Self::Octree(Encoding::Lvsi(_), Traversal::Ordered) => Some(
                 "the ordered traversal goes from a cell to its children, and the hash table knows only leaves: use `sung` with it",
+            ),
+            Self::Octree(Encoding::Lvsi(_), Traversal::Beam) => Some(
+                "beams go from a cell to its children, and the hash table knows only leaves: use `sung` with it",
             ),
             Self::Octree(Encoding::Lvsi(_), Traversal::FujimotoIwata) => Some(
                 "the traversal of Fujimoto and Iwata goes up and down the tree, and the hash table knows only leaves: use `sung` with it",
@@ -149,7 +154,7 @@ impl Partition {
         };
         let bounds = *tree.root();
         let cells = match (encoding, traversal) {
-            (Encoding::Tree, Traversal::Ordered) => Cells::Ordered(tree),
+            (Encoding::Tree, Traversal::Ordered | Traversal::Beam) => Cells::Ordered(tree),
             (Encoding::Tree, Traversal::FujimotoIwata) => Cells::FujimotoIwata(tree),
             (Encoding::Tree, Traversal::Sung) => Cells::Sung(tree),
             (Encoding::Lvsi(store), _) => {

@@ -4,12 +4,12 @@
 //! above it. Its answers are the same bits whatever structure finds them: a structure only proposes
 //! what to test, one `f64` function per shape decides, and ties go to the lowest face.
 
-mod accel;
 mod batch;
 mod chords;
 mod faces;
 mod interact;
 mod line;
+mod method;
 mod query;
 mod sheets;
 mod solids;
@@ -17,13 +17,14 @@ mod start;
 mod surfaces;
 mod world;
 
-pub use accel::{Accel, AccelError};
 pub use batch::{Batch, BatchError, Lists, RayRow, row_query};
 pub use chords::{Chord, ChordEnd, Overlaps};
+pub use method::{Method, MethodError};
 pub use query::{Counters, Departure, Hit, RayQuery, Region, SurfaceHit};
 pub use surfaces::{NearCoincidence, SurfaceReport};
 pub use world::{World, WorldConfig, WorldError, WorldStats};
 
+pub use octray_geometry::Membership;
 pub use octray_tree::{
     CellTreeStats, Criteria, Division, Encoding, LvsiStore, PartitionStats, Traversal,
     WideTreeConfig, WideTreeError, WideTreeStats,

@@ -1,6 +1,6 @@
 //! What the surface table made of a scene, for whoever wants to know before rays are shot.
 
-use octray_geometry::csg::{Face, Lowering};
+use octray_geometry::csg::{Face, LoweredScene, Lowering};
 use octray_geometry::surface::{NEAR, Surface};
 use octray_geometry::{SceneFrame, Sheet};
 use octray_math::DVec3;
@@ -62,7 +62,9 @@ impl SurfaceReport {
         }
         let near = lowering.near_pairs();
         let (merged, tolerance) = (lowering.merged_surfaces(), lowering.tolerance());
-        let (faces, surfaces, _) = lowering.finish();
+        let LoweredScene {
+            faces, surfaces, ..
+        } = lowering.finish();
         let owner = first_owners(&faces, &owners, surfaces.len());
         let pairs = near
             .iter()

@@ -13,13 +13,13 @@ use thiserror::Error;
 use crate::line::{Line, Place};
 use crate::sheets::{SheetHit, Sheets};
 use crate::solids::{Interface, Scratch, Solids};
-use crate::{Accel, Counters, Hit, RayQuery, Region};
+use crate::{Counters, Hit, Method, RayQuery, Region};
 
 /// How to prepare a world.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct WorldConfig {
     /// How surfaces are found.
-    pub accel: Accel,
+    pub method: Method,
     /// When to divide cells.
     pub criteria: Criteria,
     /// How to build the octrees over triangles.
@@ -98,8 +98,8 @@ impl World {
     /// See [`WorldError`].
     pub fn prepare(scene: Arc<Scene>, config: &WorldConfig) -> Result<Self, WorldError> {
         check_face_count(&scene)?;
-        let triangles = match config.accel {
-            Accel::Brute => None,
+        let triangles = match config.method {
+            Method::Brute => None,
             _ => Some(&config.triangles),
         };
         let place = Place::new(&scene);

@@ -6,7 +6,7 @@ mod random;
 use octray_geometry::{FaceId, Solid};
 use octray_math::{DVec3, Ray};
 use octray_scene::ObjectId;
-use octray_world::{Accel, Chord, Counters, Hit, Overlaps, RayQuery, Region, World};
+use octray_world::{Chord, Counters, Hit, Method, Overlaps, RayQuery, Region, World};
 use parts::world;
 use proptest::prelude::*;
 use random::{Model, model, point};
@@ -50,8 +50,8 @@ fn overlapping_solids_give_way_by_region_by_priority_or_not_at_all() {
     // Along x: 0 holds [-2, 2], 1 holds [1, 4]; 0 displaces 1.
     let overlapping = [(ball(2.0, 0.0), 1), (ball(1.5, 2.5), 0)];
     let ray = Ray::new(DVec3::new(-10.0, 0.0, 0.0), DVec3::X);
-    for accel in [Accel::Auto, Accel::Brute] {
-        let world = world(&overlapping, accel);
+    for method in [Method::Auto, Method::Brute] {
+        let world = world(&overlapping, method);
         let found = |overlaps| ends(&chords(&world, ray, false, overlaps));
         let displaced = [(0, 8.0, 12.0), (1, 12.0, 14.0)];
         assert_eq!(found(Overlaps::Regions), displaced);
@@ -69,7 +69,7 @@ fn overlapping_solids_give_way_by_region_by_priority_or_not_at_all() {
 #[test]
 fn a_ball_in_a_ball_cuts_its_chord_in_two_only_by_region() {
     let nested = [(ball(2.0, 0.0), 0), (ball(1.0, 0.0), 0)];
-    let world = world(&nested, Accel::Auto);
+    let world = world(&nested, Method::Auto);
     let ray = Ray::new(DVec3::new(-10.0, 0.0, 0.0), DVec3::X * 2.0);
     let regions = ends(&chords(&world, ray, false, Overlaps::Regions));
     assert_eq!(regions, [(0, 4.0, 4.5), (1, 4.5, 5.5), (0, 5.5, 6.0)]);
@@ -80,7 +80,7 @@ fn a_ball_in_a_ball_cuts_its_chord_in_two_only_by_region() {
 #[test]
 fn a_start_inside_begins_at_0_and_a_half_space_never_ends() {
     let floor = Solid::half_space(DVec3::Z, 0.0).expect("valid");
-    let world = world(&[(floor, 0), (ball(1.0, 0.0), 0)], Accel::Auto);
+    let world = world(&[(floor, 0), (ball(1.0, 0.0), 0)], Method::Auto);
     let down = Ray::new(DVec3::new(5.0, 0.0, 3.0), DVec3::NEG_Z);
     for whole in [false, true] {
         let found = chords(&world, down, whole, Overlaps::Objects);
@@ -102,7 +102,7 @@ fn a_start_inside_begins_at_0_and_a_half_space_never_ends() {
 fn solids_that_touch_are_two_crossings_and_two_chords() {
     let cube = Solid::cuboid(DVec3::ZERO, DVec3::ONE).expect("valid");
     let next = cube.translate(DVec3::X).expect("finite");
-    let world = world(&[(cube, 0), (next, 0)], Accel::Auto);
+    let world = world(&[(cube, 0), (next, 0)], Method::Auto);
     let ray = Ray::new(DVec3::new(-1.0, 0.3, 0.4), DVec3::X);
     for overlaps in ALL {
         let found = chords(&world, ray, false, overlaps);
@@ -129,7 +129,7 @@ proptest! {
     ) {
         let solids: Vec<(Solid, i32)> =
             models.iter().map(|(Model { solid, .. }, p)| (solid.clone(), *p)).collect();
-        let (tree, brute) = (world(&solids, Accel::Auto), world(&solids, Accel::Brute));
+        let (tree, brute) = (world(&solids, Method::Auto), world(&solids, Method::Brute));
         for (origin, d) in lines {
             prop_assume!(d.length() > 0.1);
             let ray = Ray::new(origin, d);

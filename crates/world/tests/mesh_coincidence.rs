@@ -18,7 +18,7 @@ use meshes::{Random, cuboid, divided, moved};
 use octray_geometry::{MeshRule, Solid};
 use octray_math::{DAffine3, DVec3, Ray};
 use octray_scene::{Material, Object, SceneBuilder};
-use octray_world::{Accel, Counters, Hit, RayQuery, World, WorldConfig};
+use octray_world::{Counters, Hit, Method, RayQuery, World, WorldConfig};
 
 fn cases() -> usize {
     std::env::var("OCTRAY_CASES").map_or(1, |times| times.parse().unwrap())
@@ -62,7 +62,7 @@ fn solid(cells: &Cells, made: Made, frame: &DAffine3) -> Solid {
     }
 }
 
-fn world(objects: &[Solid], accel: Accel) -> World {
+fn world(objects: &[Solid], method: Method) -> World {
     let mut builder = SceneBuilder::new();
     let material = builder.add_material(Material::default());
     for (index, solid) in objects.iter().enumerate() {
@@ -73,7 +73,7 @@ fn world(objects: &[Solid], accel: Accel) -> World {
         });
     }
     let config = WorldConfig {
-        accel,
+        method,
         ..WorldConfig::default()
     };
     World::prepare(Arc::new(builder.build().unwrap()), &config).unwrap()
@@ -174,10 +174,10 @@ fn mesh_boxes_are_the_boxes_wherever_faces_coincide() {
             .collect();
         let exact = world(
             &build(&boxes, &operations, |_| Made::Exact, &frame),
-            Accel::Auto,
+            Method::Auto,
         );
         let meshed = build(&boxes, &operations, |i| kinds[i], &frame);
-        let (tree, brute) = (world(&meshed, Accel::Auto), world(&meshed, Accel::Brute));
+        let (tree, brute) = (world(&meshed, Method::Auto), world(&meshed, Method::Brute));
         for line in 0..80 {
             let mut point = || frame.transform_point3(DVec3::splat(0.2) + random.point(0.25));
             let (from, to) = (point(), point());

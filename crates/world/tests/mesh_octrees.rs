@@ -5,7 +5,7 @@ use std::sync::Arc;
 use octray_geometry::{MeshRule, Sheet, Solid, TriangleMesh};
 use octray_math::{DAffine3, DVec3, Ray, hash_combine, unit_f64};
 use octray_scene::{Material, Object, SceneBuilder};
-use octray_world::{Accel, Counters, Hit, RayQuery, World, WorldConfig};
+use octray_world::{Counters, Hit, Method, RayQuery, World, WorldConfig};
 
 /// A torus about z of `around` times `across` quads, each of two triangles.
 fn ring(around: u32, across: u32) -> TriangleMesh {
@@ -25,7 +25,7 @@ fn ring(around: u32, across: u32) -> TriangleMesh {
     TriangleMesh::new(positions, triangles).expect("valid")
 }
 
-fn world(accel: Accel) -> World {
+fn world(method: Method) -> World {
     let mesh = Arc::new(ring(24, 12));
     let mut builder = SceneBuilder::new();
     let material = builder.add_material(Material::default());
@@ -43,7 +43,7 @@ fn world(accel: Accel) -> World {
         builder.add_object(Object::sheet("skin", sheet.expect("invertible"), material));
     }
     let config = WorldConfig {
-        accel,
+        method,
         ..WorldConfig::default()
     };
     World::prepare(Arc::new(builder.build().expect("valid")), &config).expect("small")
@@ -71,7 +71,7 @@ fn rays() -> impl Iterator<Item = Ray> {
 
 #[test]
 fn octrees_over_triangles_change_no_bit() {
-    let [tree, brute] = [Accel::Auto, Accel::Brute].map(world);
+    let [tree, brute] = [Method::Auto, Method::Brute].map(world);
     let stats = tree.stats().triangle_tree.expect("an octree");
     assert_eq!(stats.items as usize, tree.stats().triangles);
     assert_eq!(brute.stats().triangle_tree, None);
@@ -111,7 +111,7 @@ fn octrees_over_triangles_change_no_bit() {
 fn a_world_of_triangles_has_the_same_words_for_any_number_of_threads() {
     let build = |threads| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
-        let words = || world(Accel::Auto).words().collect::<Vec<u32>>();
+        let words = || world(Method::Auto).words().collect::<Vec<u32>>();
         pool.expect("threads").install(words)
     };
     let one = build(1);

@@ -21,7 +21,7 @@ use octray_geometry::{MeshRule, Solid, TriangleMesh};
 use octray_math::{DAffine3, DMat3, DVec3, Ray};
 use octray_scene::{Material, Object, SceneBuilder};
 use octray_tree::{WalkCost, WideTreeConfig};
-use octray_world::{Accel, Counters, Hit, RayQuery, World, WorldConfig};
+use octray_world::{Counters, Hit, Method, RayQuery, World, WorldConfig};
 
 /// Distance from a shape's surface, negative inside.
 type Distance = fn(DVec3) -> f64;
@@ -187,14 +187,14 @@ impl Specimen {
         Ray::new(target - direction * back, direction)
     }
 
-    fn world(&self, accel: Accel) -> World {
+    fn world(&self, method: Method) -> World {
         let solid = Solid::mesh(Arc::new(self.mesh.clone()), MeshRule::Strict).unwrap();
         let mut builder = SceneBuilder::new();
         let material = builder.add_material(Material::default());
         let solid = solid.transform(self.world_from_local).unwrap();
         builder.add_object(Object::solid(self.name, solid, material));
         let config = WorldConfig {
-            accel,
+            method,
             ..WorldConfig::default()
         };
         World::prepare(Arc::new(builder.build().unwrap()), &config).unwrap()
@@ -255,7 +255,8 @@ fn aimed_lines_enter_and_leave_in_turn() {
         let place = &specimen.world_from_local;
         let tree = MeshSolid::new(&mesh, place, Some(&config)).unwrap();
         let brute = MeshSolid::new(&mesh, place, None).unwrap();
-        let [world, brute_world] = [Accel::Auto, Accel::Brute].map(|accel| specimen.world(accel));
+        let [world, brute_world] =
+            [Method::Auto, Method::Brute].map(|method| specimen.world(method));
         let of_solid = |solid: &MeshSolid, ray: &Ray| {
             let mut out: Vec<MeshCrossing> = Vec::new();
             solid.crossings(ray, &mut out, &mut WalkCost::default());

@@ -8,7 +8,7 @@ use std::sync::Arc;
 use octray_geometry::{MeshRule, Sheet, Solid, TriangleMesh};
 use octray_math::{DAffine3, DVec3, Ray};
 use octray_scene::{Material, Object, Scene, SceneBuilder};
-use octray_world::{Accel, Counters, Hit, RayQuery, World, WorldConfig};
+use octray_world::{Counters, Hit, Method, RayQuery, World, WorldConfig};
 use proptest::prelude::*;
 use random::point;
 
@@ -60,9 +60,9 @@ fn scene(objects: Vec<(Option<Solid>, Option<Sheet>)>) -> Arc<Scene> {
     Arc::new(builder.build().expect("valid"))
 }
 
-fn world(scene: &Arc<Scene>, accel: Accel) -> World {
+fn world(scene: &Arc<Scene>, method: Method) -> World {
     let config = WorldConfig {
-        accel,
+        method,
         ..WorldConfig::default()
     };
     World::prepare(Arc::clone(scene), &config).expect("valid")
@@ -97,7 +97,7 @@ fn a_ray_that_leaves_a_doubled_mesh_does_not_meet_its_twin() {
             .expect("invertible")
     };
     let scene = scene(vec![(None, Some(mesh())), (None, Some(mesh()))]);
-    let world = world(&scene, Accel::Auto);
+    let world = world(&scene, Method::Auto);
     let mut hits = Vec::new();
     for i in 0..5000 {
         let at = f64::from(i) * 2e-4 - 0.5;
@@ -138,7 +138,7 @@ proptest! {
         ]);
         let sheet = |m| Sheet::mesh(Arc::clone(&mesh)).transform(m).expect("invertible");
         let scene = scene(vec![(Some(cut), Some(sheet(b))), (None, Some(sheet(c)))]);
-        let (tree, brute) = (world(&scene, Accel::Auto), world(&scene, Accel::Brute));
+        let (tree, brute) = (world(&scene, Method::Auto), world(&scene, Method::Brute));
         let queries: Vec<RayQuery> =
             rays.iter().map(|(o, d)| RayQuery::new(Ray::new(*o, *d))).collect();
         let answers = |world: &World| {
@@ -165,7 +165,7 @@ proptest! {
         let exact = scene(vec![(Some(cuboid.transform(m).expect("invertible")), None)]);
         let mesh = Solid::mesh(cube(2), MeshRule::Strict).expect("sound").transform(m).expect("invertible");
         let meshed = scene(vec![(Some(mesh), None)]);
-        let (exact, meshed) = (world(&exact, Accel::Auto), world(&meshed, Accel::Auto));
+        let (exact, meshed) = (world(&exact, Method::Auto), world(&meshed, Method::Auto));
         for (o, d) in rays {
             let ray = Ray::new(o, d);
             let (a, b) = (crossings(&exact, ray), crossings(&meshed, ray));

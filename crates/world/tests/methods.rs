@@ -5,15 +5,15 @@ mod random;
 
 use octray_geometry::Solid;
 use octray_math::{DVec3, Ray};
-use octray_world::{Accel, Chord, Counters, Hit, Overlaps, RayQuery, Region, World};
+use octray_world::{Chord, Counters, Hit, Method, Overlaps, RayQuery, Region, World};
 use parts::world;
 use proptest::prelude::*;
 use random::{model, point};
 
 /// Every method, and grids of other sizes.
-fn methods() -> Vec<Accel> {
+fn methods() -> Vec<Method> {
     let grids = ["grid:1", "grid:3", "grid:40"].map(|name| name.parse().expect("a grid"));
-    Accel::all().into_iter().chain(grids).collect()
+    Method::all().into_iter().chain(grids).collect()
 }
 
 /// All answers of a world.
@@ -76,7 +76,7 @@ fn answers(world: &World, rays: &[Ray]) -> Answers {
 
 /// The answers that all methods agree on.
 fn conform(solids: &[(Solid, i32)], rays: &[Ray]) -> Answers {
-    let expected = answers(&world(solids, Accel::Brute), rays);
+    let expected = answers(&world(solids, Method::Brute), rays);
     for method in methods() {
         assert_eq!(answers(&world(solids, method), rays), expected, "{method}");
     }

@@ -8,9 +8,9 @@ use octray_geometry::Solid;
 use octray_geometry::profile::{Edge, Outline, Region};
 use octray_math::{DVec2, DVec3, Ray, hash_u64, transform, unit_f64};
 use octray_scene::{Material, Object, SceneBuilder};
-use octray_world::{Accel, Counters, Criteria, RayQuery, World, WorldConfig};
+use octray_world::{Counters, Criteria, Method, RayQuery, World, WorldConfig};
 
-fn world(solid: &Solid, accel: Accel) -> World {
+fn world(solid: &Solid, method: Method) -> World {
     let mut builder = SceneBuilder::new();
     let material = builder.add_material(Material::default());
     builder.add_object(Object::solid("part", solid.clone(), material));
@@ -21,7 +21,7 @@ fn world(solid: &Solid, accel: Accel) -> World {
         ..Criteria::default()
     };
     let config = WorldConfig {
-        accel,
+        method,
         criteria,
         ..WorldConfig::default()
     };
@@ -59,7 +59,7 @@ impl Numbers {
 /// The volume by chords along a slanted direction through a grid of points of a plane, with the
 /// error that `rays_across^2` rays leave.
 fn volume(solid: &Solid, rays_across: u32) -> f64 {
-    let world = world(solid, Accel::Auto);
+    let world = world(solid, Method::Auto);
     let bounds = solid.bounds();
     let direction = DVec3::new(0.31, -0.22, 0.93).normalize();
     let (u, v) = direction.any_orthonormal_pair();
@@ -226,7 +226,7 @@ fn volumes_of_lathes_are_area_times_the_way_of_the_centroid() {
 
 /// Compares two solids' crossings with random lines.
 fn assert_same(name: &str, one: &Solid, other: &Solid, tolerance: f64) {
-    let (one, other) = (world(one, Accel::Auto), world(other, Accel::Auto));
+    let (one, other) = (world(one, Method::Auto), world(other, Method::Auto));
     let mut numbers = Numbers(1);
     let mut met = 0;
     for _ in 0..2000 * work() {
@@ -334,7 +334,7 @@ fn a_cutter_whose_faces_coincide_leaves_no_skin() {
         let turned = |solid: &Solid| solid.transform(turn).expect("rigid");
         assert_same(name, &turned(one), &turned(other), 1e-13);
     }
-    let nothing = world(&Solid::difference([cutter.clone(), cutter]), Accel::Auto);
+    let nothing = world(&Solid::difference([cutter.clone(), cutter]), Method::Auto);
     let mut numbers = Numbers(7);
     for _ in 0..1000 {
         let ray = Ray::new(numbers.vector() * 3.0, numbers.vector());
@@ -367,7 +367,7 @@ fn a_cutter_whose_faces_coincide_leaves_no_skin() {
     };
     let built = Solid::union([block.expect("valid"), peg(0.0), peg(2.0)]);
     assert_same("slot", &slot, &built, 1e-14);
-    let rest = world(&Solid::difference([slot, built]), Accel::Auto);
+    let rest = world(&Solid::difference([slot, built]), Method::Auto);
     for _ in 0..1000 {
         let ray = Ray::new(numbers.vector() * 2.0, numbers.vector());
         assert!(crossings(&rest, ray).is_empty(), "{ray:?}");
@@ -420,7 +420,7 @@ fn lines_at_corners_and_edges_enter_as_often_as_they_leave() {
 
 /// Lines through the targets from near and far, along and across; also by brute force.
 fn aim(name: &str, solid: &Solid, targets: &[DVec3]) {
-    let (tree, brute) = (world(solid, Accel::Auto), world(solid, Accel::Brute));
+    let (tree, brute) = (world(solid, Method::Auto), world(solid, Method::Brute));
     let mut numbers = Numbers(42);
     for round in 0..1500 * work() {
         let target = targets[round as usize % targets.len()];

@@ -7,11 +7,11 @@ use std::sync::Arc;
 use octray_geometry::Solid;
 use octray_math::{DVec3, Ray};
 use octray_scene::{Material, Object, SceneBuilder};
-use octray_world::{Accel, Counters, Criteria, Hit, RayQuery, Region, World, WorldConfig};
+use octray_world::{Counters, Criteria, Hit, Method, RayQuery, Region, World, WorldConfig};
 use proptest::prelude::*;
 use random::{Model, model, point};
 
-fn world(solids: impl IntoIterator<Item = Solid>, accel: Accel, criteria: Criteria) -> World {
+fn world(solids: impl IntoIterator<Item = Solid>, method: Method, criteria: Criteria) -> World {
     let mut builder = SceneBuilder::new();
     let material = builder.add_material(Material::default());
     for solid in solids {
@@ -21,7 +21,7 @@ fn world(solids: impl IntoIterator<Item = Solid>, accel: Accel, criteria: Criter
     World::prepare(
         scene,
         &WorldConfig {
-            accel,
+            method,
             criteria,
             ..WorldConfig::default()
         },
@@ -60,10 +60,10 @@ fn a_drilled_plate_has_no_skin_over_its_hole() {
     let plate = Solid::cuboid(DVec3::ZERO, DVec3::splat(10.0)).expect("valid");
     let drill = Solid::cylinder(2.0, 0.0, 10.0).expect("valid");
     let drill = drill.translate(DVec3::new(5.0, 5.0, 0.0)).expect("finite");
-    for accel in [Accel::Auto, Accel::Brute] {
+    for method in [Method::Auto, Method::Brute] {
         let world = world(
             [Solid::difference([plate.clone(), drill.clone()])],
-            accel,
+            method,
             deep(),
         );
         let down = |x: f64| Ray::new(DVec3::new(x, 5.0, 20.0), DVec3::NEG_Z);
@@ -80,12 +80,12 @@ fn a_drilled_plate_has_no_skin_over_its_hole() {
 fn touching_solids_have_no_wall_and_a_solid_minus_itself_is_empty() {
     let left = Solid::cuboid(DVec3::ZERO, DVec3::ONE).expect("valid");
     let right = left.translate(DVec3::X).expect("finite");
-    let both = world([Solid::union([left.clone(), right])], Accel::Auto, deep());
+    let both = world([Solid::union([left.clone(), right])], Method::Auto, deep());
     let hits = crossings(&both, Ray::new(DVec3::new(-1.0, 0.3, 0.4), DVec3::X), true);
     assert_eq!(hits.iter().map(|h| h.t).collect::<Vec<_>>(), [1.0, 3.0]);
     let nothing = world(
         [Solid::difference([left.clone(), left])],
-        Accel::Auto,
+        Method::Auto,
         deep(),
     );
     assert!(
@@ -102,7 +102,7 @@ fn touching_solids_have_no_wall_and_a_solid_minus_itself_is_empty() {
 fn regions_follow_size_and_priority() {
     let outer = Solid::sphere(2.0).expect("valid");
     let inner = Solid::sphere(1.0).expect("valid");
-    let both = world([outer, inner], Accel::Auto, deep());
+    let both = world([outer, inner], Method::Auto, deep());
     let hits = crossings(&both, Ray::new(DVec3::new(-5.0, 0.0, 0.0), DVec3::X), true);
     let regions: Vec<Option<u32>> = hits
         .iter()
@@ -119,7 +119,7 @@ fn a_half_space_is_met_anywhere() {
         .expect("valid")
         .translate(DVec3::Z)
         .expect("finite");
-    let world = world([floor, ball], Accel::Auto, deep());
+    let world = world([floor, ball], Method::Auto, deep());
     for far in [0.0, 10.0, 1e7] {
         let from = DVec3::new(far, 3.0, 5.0);
         let hit = closest(&world, RayQuery::new(Ray::new(from, DVec3::NEG_Z)));
@@ -130,7 +130,7 @@ fn a_half_space_is_met_anywhere() {
 
 #[test]
 fn odd_rays_meet_nothing_and_long_or_short_directions_do_not_matter() {
-    let world = world([Solid::sphere(1.0).expect("valid")], Accel::Auto, deep());
+    let world = world([Solid::sphere(1.0).expect("valid")], Method::Auto, deep());
     let origin = DVec3::new(-3.0, 0.0, 0.0);
     for direction in [DVec3::ZERO, DVec3::NAN, DVec3::INFINITY] {
         assert!(closest(&world, RayQuery::new(Ray::new(origin, direction))).is_miss());
@@ -148,7 +148,7 @@ fn a_lone_surface_is_not_followed_into_the_smallest_cells() {
         Solid::sphere(1.0),
         Solid::cone(1.0, 0.0, 0.0, 2.0),
     ] {
-        let world = world([solid.expect("valid")], Accel::Auto, Criteria::default());
+        let world = world([solid.expect("valid")], Method::Auto, Criteria::default());
         let cells = world.stats().cells.expect("an octree").cells;
         assert!(cells.occupied < 2000, "{cells:?}");
     }
@@ -161,7 +161,7 @@ proptest! {
     fn parity_along_a_line_is_membership(model in model(), origin in point(4.0), d in point(1.0)) {
         let Model { solid, recipe } = model;
         prop_assume!(d.length() > 0.1);
-        let world = world([solid], Accel::Auto, deep());
+        let world = world([solid], Method::Auto, deep());
         let ray = Ray::new(origin, d);
         let hits = crossings(&world, ray, true);
         for pair in hits.windows(2) {
@@ -190,8 +190,8 @@ proptest! {
         origins in proptest::collection::vec((point(4.0), point(1.0)), 40),
     ) {
         let solids: Vec<Solid> = models.into_iter().map(|m| m.solid).collect();
-        let tree = world(solids.clone(), Accel::Auto, deep());
-        let brute = world(solids, Accel::Brute, deep());
+        let tree = world(solids.clone(), Method::Auto, deep());
+        let brute = world(solids, Method::Brute, deep());
         for (origin, direction) in origins {
             let ray = Ray::new(origin, direction);
             prop_assert_eq!(crossings(&tree, ray, true), crossings(&brute, ray, true));
@@ -222,7 +222,7 @@ proptest! {
         model in model(), origin in point(4.0), d in point(1.0),
     ) {
         prop_assume!(d.length() > 0.1);
-        let world = world([model.solid], Accel::Auto, deep());
+        let world = world([model.solid], Method::Auto, deep());
         let expected = crossings(&world, Ray::new(origin, d), false);
         let mut query = RayQuery::new(Ray::new(origin, d));
         for hit in expected {
@@ -243,7 +243,7 @@ proptest! {
         let solids: Vec<Solid> = models.into_iter().map(|m| m.solid).collect();
         let with = |threads| {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("pool");
-            let world = pool.install(|| world(solids.clone(), Accel::Auto, deep()));
+            let world = pool.install(|| world(solids.clone(), Method::Auto, deep()));
             world.words().collect::<Vec<u32>>()
         };
         prop_assert_eq!(with(1), with(4));

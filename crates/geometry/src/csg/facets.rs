@@ -151,7 +151,7 @@ mod tests {
     use std::sync::Arc;
 
     use super::*;
-    use crate::csg::Lowering;
+    use crate::csg::{LoweredScene, Lowering};
     use crate::{MeshRule, SceneFrame, Solid, TriangleMesh};
     use octray_math::{DAffine3, Ray};
     use octray_tree::WalkCost;
@@ -177,7 +177,7 @@ mod tests {
         for solid in solids {
             lowering.lower(solid).expect("not constant");
         }
-        lowering.finish().2
+        lowering.finish().meshes
     }
 
     fn shared(solids: &[Solid]) -> Vec<usize> {
@@ -236,7 +236,9 @@ mod tests {
         for solid in [mesh_cube(turn), top] {
             lowering.lower(&solid).expect("not constant");
         }
-        let (_, surfaces, meshes) = lowering.finish();
+        let LoweredScene {
+            surfaces, meshes, ..
+        } = lowering.finish();
         let operand = &meshes[0];
         let solid = crate::mesh::MeshSolid::new(&operand.mesh, &operand.scene_from_mesh, None);
         let plain = solid.expect("sound");

@@ -6,6 +6,7 @@ use octray_math::DAffine3;
 
 use super::code::{Code, Constant, Operation, Writer};
 use super::facets;
+use super::operand::Operand;
 use crate::mesh::FacetPlanes;
 use crate::profile::Formula;
 use crate::surface::{NearPair, Surface, SurfaceTable};
@@ -47,6 +48,21 @@ pub struct Lowering {
     pub(super) table: SurfaceTable,
     faces: Vec<Face>,
     pub(super) meshes: Vec<MeshOperand>,
+    operands: Option<Vec<Operand>>,
+}
+
+/// What the solids of a world became.
+#[derive(Debug)]
+pub struct LoweredScene {
+    /// By their ids.
+    pub faces: Vec<Face>,
+    /// By their ids.
+    pub surfaces: Vec<Surface>,
+    /// The surface of mesh operand `i` is `surfaces.len() + i`.
+    pub meshes: Vec<MeshOperand>,
+    /// In the order of their faces; empty unless they were asked for
+    /// ([`Lowering::with_operands`]).
+    pub operands: Vec<Operand>,
 }
 
 /// Surfaces of meshes are numbered downwards from here until the table's size is known.
@@ -77,7 +93,15 @@ impl Lowering {
             table: SurfaceTable::new(frame.size, frame.largest()),
             faces: Vec::new(),
             meshes: Vec::new(),
+            operands: None,
         }
+    }
+
+    /// Keeps a list of the operands too.
+    #[must_use]
+    pub fn with_operands(mut self) -> Self {
+        self.operands = Some(Vec::new());
+        self
     }
 
     /// The expression of a solid given in world coordinates.
@@ -96,9 +120,9 @@ impl Lowering {
         }
     }
 
-    /// Faces, surfaces and mesh operands; the surface of mesh operand `i` is `surfaces.len() + i`.
+    /// All of it.
     #[must_use]
-    pub fn finish(self) -> (Vec<Face>, Vec<Surface>, Vec<MeshOperand>) {
+    pub fn finish(self) -> LoweredScene {
         let tolerance = self.table.tolerance() * self.scene_size;
         let surfaces = self.table.into_surfaces();
         let mut faces = self.faces;
@@ -110,7 +134,12 @@ impl Lowering {
         }
         let mut meshes = self.meshes;
         facets::share_planes(&surfaces, &mut meshes, self.scene_size, tolerance);
-        (faces, surfaces, meshes)
+        LoweredScene {
+            faces,
+            surfaces,
+            meshes,
+            operands: self.operands.unwrap_or_default(),
+        }
     }
 
     /// How many faces there are so far.
@@ -239,7 +268,23 @@ impl Lowering {
             sides,
             faces: vec![[None; 2]; composite.faces().len()],
         };
-        self.formula(composite.formula(), &mut named, context, writer)
+        let first = self.face_count();
+        let constant = self.formula(composite.formula(), &mut named, context, writer);
+        self.note_operand(&primitive, first, context);
+        constant
+    }
+
+    /// Lists an operand whose faces are those from `first` on.
+    fn note_operand(&mut self, primitive: &Primitive, first: usize, context: &Context) {
+        let faces = first as u32..self.face_count() as u32;
+        if let Some(operands) = &mut self.operands {
+            operands.push(Operand {
+                primitive: primitive.clone(),
+                scene_from_local: context.scene_from_here,
+                faces,
+                complemented: context.complemented,
+            });
+        }
     }
 
     fn formula(
@@ -295,6 +340,7 @@ impl Lowering {
         } else {
             Operation::And
         };
+        let first = self.face_count();
         let mut open = writer.open(operation);
         for (surface, inside_is_positive) in sides {
             let face = FaceId(self.faces.len() as u32);
@@ -308,6 +354,7 @@ impl Lowering {
             writer.operand(&mut open, start, None);
         }
         writer.close(&open);
+        self.note_operand(primitive, first, context);
     }
 }
 
@@ -321,7 +368,9 @@ mod tests {
     fn contains(solid: &Solid, p: DVec3) -> bool {
         let mut lowering = Lowering::new(&SceneFrame::around_origin(10.0));
         let lowered = lowering.lower(solid);
-        let (faces, surfaces, _) = lowering.finish();
+        let LoweredScene {
+            faces, surfaces, ..
+        } = lowering.finish();
         match lowered {
             Err(constant) => constant == Constant::True,
             Ok(code) => evaluate(code.words(), &|id: FaceId| {
@@ -375,7 +424,7 @@ mod tests {
             .expect("not constant");
         assert_eq!(faces(code.words()).count(), 9);
         assert_eq!(lowering.merged_surfaces(), 2);
-        let (_, surfaces, _) = lowering.finish();
+        let surfaces = lowering.finish().surfaces;
         assert_eq!(surfaces.len(), 7);
     }
 

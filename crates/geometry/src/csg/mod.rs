@@ -9,10 +9,12 @@
 mod code;
 mod facets;
 mod lower;
+mod operand;
 mod plane_index;
 mod sides;
 
 pub use code::{
     Code, Constant, Term, changed_face, evaluate, faces, operands, reduce, term, truth_on,
 };
-pub use lower::{Face, Lowered, Lowering, MeshOperand};
+pub use lower::{Face, Lowered, LoweredScene, Lowering, MeshOperand};
+pub use operand::Operand;

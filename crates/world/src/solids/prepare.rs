@@ -2,7 +2,7 @@
 
 use std::cmp::Ordering;
 
-use octray_geometry::csg::{Constant, Face, Lowered, Lowering, MeshOperand};
+use octray_geometry::csg::{Constant, Face, Lowered, LoweredScene, Lowering, MeshOperand};
 use octray_geometry::mesh::{MeshError, MeshSolid};
 use octray_geometry::surface::{PLACE_TOLERANCE, SURFACE_TOLERANCE};
 use octray_geometry::{FaceId, MaterialId, SceneFrame, Sheet, Solid};
@@ -13,7 +13,7 @@ use octray_tree::{Division, Encoding, Partition, WideTreeConfig};
 use super::cells::{Cells, Content};
 use super::volumes::Volumes;
 use super::{Leaves, MeshSurface, Ranked, Solids};
-use crate::{Accel, WorldConfig};
+use crate::{Method, WorldConfig};
 
 /// An object before its rank is known.
 struct Candidate<'a> {
@@ -103,7 +103,12 @@ impl Solids {
             rank_of[object.object.0 as usize] = rank as u32;
         }
         let merged_surfaces = lowering.merged_surfaces();
-        let (faces, surfaces, operands) = lowering.finish();
+        let LoweredScene {
+            faces,
+            surfaces,
+            meshes: operands,
+            ..
+        } = lowering.finish();
         let face_owner: Vec<u32> = owners.iter().map(|id| rank_of[id.0 as usize]).collect();
         let meshes = mesh_surfaces(
             &operands,
@@ -140,14 +145,10 @@ impl Solids {
             .filter(Aabb::is_bounded)
             .fold(Aabb::EMPTY, Aabb::union);
         let object_bounds: Vec<Aabb> = candidates.iter().map(|c| c.bounds).collect();
-        let division = match config.accel {
-            Accel::Auto => Some(Division::default()),
-            Accel::Cells(division) => Some(division),
-            Accel::Brute | Accel::Spheres | Accel::Boxes => None,
-        };
-        let volumes = match config.accel {
-            Accel::Spheres => Some(Volumes::new(&object_bounds, true)),
-            Accel::Boxes => Some(Volumes::new(&object_bounds, false)),
+        let division = config.method.division();
+        let volumes = match config.method {
+            Method::Spheres => Some(Volumes::new(&object_bounds, true)),
+            Method::Boxes => Some(Volumes::new(&object_bounds, false)),
             _ => None,
         };
         let mut contents = Vec::new();

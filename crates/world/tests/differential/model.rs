@@ -6,7 +6,7 @@ use octray_geometry::Solid;
 use octray_math::{DVec3, Ray};
 use octray_scene::{Material, Object, Scene, SceneBuilder};
 use octray_world::{
-    Accel, Chord, Counters, Criteria, Hit, Overlaps, RayQuery, Region, World, WorldConfig,
+    Chord, Counters, Criteria, Hit, Method, Overlaps, RayQuery, Region, World, WorldConfig,
 };
 
 use crate::oracle::Oracle;
@@ -63,15 +63,15 @@ impl Model {
     /// The engine gets another scene than the oracle: to see whether that is noticed.
     pub(crate) fn prepare_as(&self, other: &Self) -> Option<Subject> {
         let scene = other.scene()?;
-        let world = |accel| {
+        let world = |method| {
             let config = WorldConfig {
-                accel,
+                method,
                 criteria: deep(),
                 ..WorldConfig::default()
             };
             World::prepare(Arc::clone(&scene), &config).ok()
         };
-        let (octree, brute) = (world(Accel::Auto)?, world(Accel::Brute)?);
+        let (octree, brute) = (world(Method::Auto)?, world(Method::Brute)?);
         let merged = brute.stats().merged_surfaces > 0;
         let is_bounded = |part: &Part| {
             let bounds = part.solid.bounds();

@@ -4,10 +4,10 @@ use std::sync::Arc;
 
 use octray_geometry::Solid;
 use octray_scene::{Material, Object, SceneBuilder};
-use octray_world::{Accel, Criteria, World, WorldConfig};
+use octray_world::{Criteria, Method, World, WorldConfig};
 
 /// One object for every solid, with its priority.
-pub(crate) fn world(solids: &[(Solid, i32)], accel: Accel) -> World {
+pub(crate) fn world(solids: &[(Solid, i32)], method: Method) -> World {
     let mut builder = SceneBuilder::new();
     let material = builder.add_material(Material::default());
     for (solid, priority) in solids {
@@ -17,7 +17,7 @@ pub(crate) fn world(solids: &[(Solid, i32)], accel: Accel) -> World {
         });
     }
     let config = WorldConfig {
-        accel,
+        method,
         criteria: Criteria {
             max_depth: 7,
             visit_cost: 0.1,
