@@ -29,6 +29,8 @@ pub(crate) struct TileRenderer<'a> {
     queues: Queues,
     slice: Vec<PathState>,
     queries: Vec<RayQuery>,
+    /// Of rays of one kind.
+    run_hits: Vec<Hit>,
     hits: Vec<Hit>,
 }
 
@@ -58,6 +60,7 @@ impl<'a> TileRenderer<'a> {
             queues: Queues::default(),
             slice: Vec::new(),
             queries: Vec::new(),
+            run_hits: Vec::new(),
             hits: Vec::new(),
         }
     }
@@ -132,17 +135,25 @@ impl<'a> TileRenderer<'a> {
         let waiting = self.queues.paths.len();
         stats.longest_queue = stats.longest_queue.max(waiting as u64);
         let rest = waiting.saturating_sub(self.slice_length());
+        // By kind, so that costs can be told apart; the film does not mind the order.
         self.slice.clear();
-        self.slice.extend(self.queues.paths.drain(rest..).rev());
-        self.queries.clear();
-        self.queries.extend(self.slice.iter().map(PathState::query));
-        self.world
-            .closest(&self.queries, &mut self.hits, &mut stats.queries);
-        for (state, hit) in self.slice.iter().zip(&self.hits) {
-            stats.rays.count(state.kind);
-            if !hit.is_miss() {
-                stats.hits.count(state.kind);
-            }
+        for kind in RayKind::ALL {
+            let newest = self.queues.paths[rest..].iter().rev();
+            self.slice.extend(newest.filter(|state| state.kind == kind));
+        }
+        self.queues.paths.truncate(rest);
+        self.hits.clear();
+        for run in self.slice.chunk_by(|a, b| a.kind == b.kind) {
+            let kind = run[0].kind;
+            self.queries.clear();
+            self.queries.extend(run.iter().map(PathState::query));
+            let counters = stats.queries.of_path(kind);
+            self.world
+                .closest(&self.queries, &mut self.run_hits, counters);
+            let met = self.run_hits.iter().filter(|hit| !hit.is_miss()).count();
+            *stats.rays.of_path(kind) += run.len() as u64;
+            *stats.hits.of_path(kind) += met as u64;
+            self.hits.append(&mut self.run_hits);
         }
         self.integrator
             .shade(&self.slice, &self.hits, film, &mut self.queues, stats);
