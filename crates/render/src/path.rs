@@ -18,11 +18,6 @@ pub enum RayKind {
     Refracted,
 }
 
-impl RayKind {
-    /// Every kind.
-    pub const ALL: [Self; 3] = [Self::Primary, Self::Reflected, Self::Refracted];
-}
-
 /// A ray whose light belongs to a pixel.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PathState {

@@ -29,7 +29,7 @@ pub(crate) struct TileRenderer<'a> {
     queues: Queues,
     slice: Vec<PathState>,
     queries: Vec<RayQuery>,
-    /// Of rays of one kind.
+    /// Of rays of a later kind.
     run_hits: Vec<Hit>,
     hits: Vec<Hit>,
 }
@@ -135,25 +135,31 @@ impl<'a> TileRenderer<'a> {
         let waiting = self.queues.paths.len();
         stats.longest_queue = stats.longest_queue.max(waiting as u64);
         let rest = waiting.saturating_sub(self.slice_length());
-        // By kind, so that costs can be told apart; the film does not mind the order.
         self.slice.clear();
-        for kind in RayKind::ALL {
-            let newest = self.queues.paths[rest..].iter().rev();
-            self.slice.extend(newest.filter(|state| state.kind == kind));
+        self.slice.extend(self.queues.paths.drain(rest..).rev());
+        // By kind, so that costs can be told apart; the film does not mind the order.
+        if !self.slice.is_sorted_by_key(|state| state.kind) {
+            self.slice.sort_by_key(|state| state.kind);
         }
-        self.queues.paths.truncate(rest);
         self.hits.clear();
         for run in self.slice.chunk_by(|a, b| a.kind == b.kind) {
             let kind = run[0].kind;
             self.queries.clear();
             self.queries.extend(run.iter().map(PathState::query));
+            let is_first = self.hits.is_empty();
+            let hits = if is_first {
+                &mut self.hits
+            } else {
+                &mut self.run_hits
+            };
             let counters = stats.queries.of_path(kind);
-            self.world
-                .closest(&self.queries, &mut self.run_hits, counters);
-            let met = self.run_hits.iter().filter(|hit| !hit.is_miss()).count();
+            self.world.closest(&self.queries, hits, counters);
+            let met = hits.iter().filter(|hit| !hit.is_miss()).count();
             *stats.rays.of_path(kind) += run.len() as u64;
             *stats.hits.of_path(kind) += met as u64;
-            self.hits.append(&mut self.run_hits);
+            if !is_first {
+                self.hits.append(&mut self.run_hits);
+            }
         }
         self.integrator
             .shade(&self.slice, &self.hits, film, &mut self.queues, stats);
