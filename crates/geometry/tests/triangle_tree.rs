@@ -7,9 +7,9 @@ mod meshes;
 
 use meshes::{Random, nasty_ray, zoo};
 use octray_geometry::TriangleMesh;
-use octray_geometry::mesh::TriangleTree;
+use octray_geometry::mesh::{SearchCost, SearchMemory, TriangleSearch, TriangleTree};
 use octray_math::{DVec3, Interval, Ray};
-use octray_tree::{WalkCost, WideTreeConfig};
+use octray_tree::WideTreeConfig;
 
 fn both(mesh: &TriangleMesh) -> [TriangleTree; 2] {
     let config = WideTreeConfig::default();
