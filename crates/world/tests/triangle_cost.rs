@@ -12,24 +12,27 @@ use octray_math::{DVec3, Ray, hash_combine, unit_f64};
 use octray_scene::{Material, Object, SceneBuilder};
 use octray_world::{Counters, Method, RayQuery, World, WorldConfig};
 
-/// A rough ball of about `wanted` triangles.
-fn rough_ball(wanted: u32) -> TriangleMesh {
-    let rows = libm::sqrt(f64::from(wanted) / 4.0) as u32;
-    let around = 2 * rows;
+/// A rough ring of about `wanted` triangles, without poles.
+fn rough_ring(wanted: u32) -> TriangleMesh {
+    let across = libm::sqrt(f64::from(wanted) / 4.0) as u32;
+    let around = 2 * across;
+    let turn = |i: u32, n: u32| libm::sincos(std::f64::consts::TAU * f64::from(i) / f64::from(n));
     let mut positions = Vec::new();
-    for j in 0..=rows {
+    for j in 0..across {
+        let (sj, cj) = turn(j, across);
         for i in 0..around {
-            let (s, c) = libm::sincos(std::f64::consts::TAU * f64::from(i) / f64::from(around));
-            let (sj, cj) = libm::sincos(std::f64::consts::PI * f64::from(j) / f64::from(rows));
-            let height = 1.0 + 0.05 * libm::sin(9.0 * c * sj) * libm::sin(7.0 * s * sj + 5.0 * cj);
-            positions.push(DVec3::new(c * sj, s * sj, cj) * height);
+            let (s, c) = turn(i, around);
+            let rough = 0.03 * libm::sin(29.0 * c + 5.0 * sj) * libm::sin(17.0 * s * cj);
+            let minor = 0.35 + rough;
+            let radius = 0.7 + minor * cj;
+            positions.push(DVec3::new(c * radius, s * radius, sj * minor));
         }
     }
-    let at = |i: u32, j: u32| j * around + i % around;
-    let cells = (0..rows).flat_map(|j| (0..around).map(move |i| (i, j)));
+    let at = |i: u32, j: u32| j % across * around + i % around;
+    let cells = (0..across).flat_map(|j| (0..around).map(move |i| (i, j)));
     let triangles = cells.flat_map(|(i, j)| {
         let [a, b, c, d] = [at(i, j), at(i + 1, j), at(i, j + 1), at(i + 1, j + 1)];
-        [[a, c, b], [b, c, d]]
+        [[a, b, c], [b, d, c]]
     });
     TriangleMesh::new(positions, triangles.collect()).expect("valid")
 }
@@ -55,11 +58,11 @@ fn methods_over_large_meshes() {
     });
     let sizes = std::env::var("OCTRAY_TRIANGLES").unwrap_or_else(|_| "70000,1000000".into());
     for size in sizes.split(',') {
-        let mesh = Arc::new(rough_ball(size.parse().expect("a number")));
+        let mesh = Arc::new(rough_ring(size.parse().expect("a number")));
         let mut builder = SceneBuilder::new();
         let material = builder.add_material(Material::default());
         let sheet = Sheet::mesh(Arc::clone(&mesh));
-        builder.add_object(Object::sheet("ball", sheet, material));
+        builder.add_object(Object::sheet("ring", sheet, material));
         let scene = Arc::new(builder.build().expect("valid"));
         println!("{} triangles", mesh.triangles().len());
         let queries = queries(100_000);
