@@ -14,6 +14,7 @@ use octray_math::{Aabb, CellKey, DVec3};
 
 pub use build::{Criteria, Subdivide};
 pub use walk::WalkStack;
+pub(crate) use walk::{Slabs, Waiting};
 
 /// What a cell is.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -52,7 +53,7 @@ impl Node {
     }
 
     /// Whether the word of a node says that it is empty.
-    const fn is_empty(word: u32) -> bool {
+    pub(crate) const fn is_empty(word: u32) -> bool {
         word & 3 == 0
     }
 
