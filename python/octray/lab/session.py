@@ -203,7 +203,12 @@ class Session:
             member.steps += 1
             if not self._build(member):
                 return
-        member.worker.send("render", options=self.plan.render, folder=str(self.folder))
+        member.worker.send(
+            "render",
+            options=self.plan.render,
+            folder=str(self.folder),
+            png=self.plan.drawings,
+        )
         answer = self._receive(member)
         if answer is not None:
             combination.render_s.append(answer["render_s"])
