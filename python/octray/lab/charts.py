@@ -56,9 +56,10 @@ def _scale(axes: Axes, values: Sequence[float]) -> None:
             axes.set_xscale("log")
         else:
             axes.set_xscale("symlog", linthresh=min(positive), linscale=0.4)
+            axes.set_xlim(left=0)
         _plain(axes)
     else:
-        axes.set_xlim(left=0)
+        axes.set_xlim(0, None if positive else 1)
 
 
 def _absent(axes: Axes, row: int, combination: Combination) -> None:
@@ -111,7 +112,9 @@ def stacked(
     unit: str = "",
 ) -> str | None:
     """Draw bars of parts, one bar for each method; ``None`` if there is nothing to draw."""
-    parts = list(dict.fromkeys(part for value in values if value for part in value))
+    parts = list(
+        dict.fromkeys(part for value in values for part, size in (value or {}).items() if size)
+    )
     if not parts:
         return None
     with drawn(name, _WIDTH, _height(len(combinations)) + 0.3) as figure:
@@ -149,9 +152,17 @@ def work(combinations: Sequence[Combination]) -> str | None:
     found = [figures.of(c.report, c.stats) for c in combinations]
     if not any(f.per_ray_by_kind for f in found):
         return None
+    counted = [f.per_ray or {} for f in found]
+    panes = [
+        (title, names)
+        for title, names in WORK
+        if any(costs.get(name) for costs in counted for name in names)
+    ]
+    if not panes:
+        return None
     with drawn("work", _WIDTH, _height(len(combinations)) + 0.3) as figure:
-        panels = figure.subplots(1, len(WORK), sharey=True)
-        for axes, (title, names) in zip(panels, WORK, strict=True):
+        panels = figure.subplots(1, len(panes), sharey=True, squeeze=False)[0]
+        for axes, (title, names) in zip(panels, panes, strict=True):
             shown: list[float] = []
             for place, (kind, marker) in enumerate(_KINDS.items()):
                 points = [
@@ -162,11 +173,11 @@ def work(combinations: Sequence[Combination]) -> str | None:
                 shown += [value for value, _ in points]
                 axes.plot(
                     [value for value, _ in points],
-                    [row for _, row in points],
+                    # One above the other, so that none hides another.
+                    [row + 0.16 * (place - 1.5) for _, row in points],
                     marker,
                     color=COLORS[place],
-                    ms=5,
-                    alpha=0.85,
+                    ms=4.5,
                     label=kind,
                     clip_on=False,
                 )

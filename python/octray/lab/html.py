@@ -311,6 +311,15 @@ def _wires(report: Report, method: str, camera: dict[str, Any]) -> str:
     )
 
 
+def _option(name: str, value: Any) -> str:
+    """Write the value of an option with its unit."""
+    if isinstance(value, list):
+        return ", ".join(map(str, value))
+    if value is True:
+        return "yes"
+    return f"{value:g} s" if name.endswith("_s") else str(value)
+
+
 def _conditions(report: Report) -> str:
     machine, options = report.machine, report.options
     memory = machine["memory_bytes"]
@@ -321,7 +330,7 @@ def _conditions(report: Report) -> str:
         "system": f"{machine['system']}, Python {machine['python']}",
         "repetitions": str(options["repeat"]),
         **{
-            name.replace("_", " "): str(value)
+            name.removesuffix("_s").replace("_", " "): _option(name, value)
             for name, value in {**options, **options["tree"]}.items()
             if value not in (None, False, {}) and name not in {"tree", "repeat", "size"}
         },
