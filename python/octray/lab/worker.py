@@ -159,7 +159,10 @@ def answer(worker: Worker, request: dict[str, Any]) -> dict[str, Any]:
     except MemoryError:
         return {"error": "memory", "message": "out of memory"}
     except Exception as error:  # noqa: BLE001 - whatever it is, the others go on
-        return {"error": "failed", "message": str(error) or type(error).__name__}
+        text = str(error) or type(error).__name__
+        # So ends a structure that the limit of memory leaves no room to stay coarser in.
+        refused = "bytes, more than the limit of" in text
+        return {"error": "memory" if refused else "failed", "message": text}
     return done
 
 
