@@ -41,18 +41,45 @@ def occupied(cells: Cells) -> npt.NDArray[np.bool_]:
     return full
 
 
-def coarsened(cells: Cells, most: int = MOST_BOXES) -> tuple[Floats, npt.NDArray[Any], int | None]:
-    """Give boxes of occupied leaves and their depths, not too many.
+def _root(cells: Cells) -> tuple[Floats, Floats]:
+    """Give the lowest corner and the sides of the box that these cells divide."""
+    bounds, depth = np.asarray(cells["bounds"], dtype=np.float64), np.asarray(cells["depth"])
+    root = ((bounds[:, 1] - bounds[:, 0]) * 2.0 ** depth[:, None]).max(axis=0)
+    return bounds[:, 0].min(axis=0), root
+
+
+def _places(points: Floats, low: Floats, root: Floats, depth: int) -> npt.NDArray[np.int64]:
+    """Give the number of the cell of a depth in which each point (n, 3) lies, -1 if outside."""
+    count = 1 << depth
+    at = np.floor((points - low) / root * count).astype(np.int64)
+    number: npt.NDArray[np.int64] = (at[:, 2] * count + at[:, 1]) * count + at[:, 0]
+    return np.where(((at >= 0) & (at < count)).all(axis=1), number, -1)
+
+
+def holding(cells: Cells, points: Floats) -> npt.NDArray[np.bool_]:
+    """Say which cells have one of these points (n, 3) in them."""
+    bounds, depth = np.asarray(cells["bounds"], dtype=np.float64), np.asarray(cells["depth"])
+    low, root = _root(cells)
+    found = np.zeros(len(depth), dtype=bool)
+    for level in np.unique(depth):
+        here = depth == level
+        middles = bounds[here].mean(axis=1)
+        occupied_places = np.unique(_places(points, low, root, int(level)))
+        found[here] = np.isin(_places(middles, low, root, int(level)), occupied_places)
+    return found
+
+
+def coarsened(
+    cells: Cells, chosen: npt.NDArray[np.bool_], most: int = MOST_BOXES
+) -> tuple[Floats, npt.NDArray[Any], int | None]:
+    """Give the boxes of chosen cells and their depths, not too many.
 
     Where there are too many, those below some depth are replaced by their ancestors there; that
     depth is the third value, ``None`` if all are drawn as they are.
     """
-    everything, depths = np.asarray(cells["bounds"], dtype=np.float64), np.asarray(cells["depth"])
-    low = everything[:, 0].min(axis=0)
-    sides = everything[:, 1] - everything[:, 0]
-    root = (sides * 2.0 ** depths[:, None]).max(axis=0)
-    full = occupied(cells)
-    bounds, depth = everything[full], depths[full].astype(int)
+    low, root = _root(cells)
+    bounds = np.asarray(cells["bounds"], dtype=np.float64)[chosen]
+    depth = np.asarray(cells["depth"])[chosen].astype(int)
     if len(bounds) <= most:
         return bounds, depth, None
     limit = int(depth.max())
@@ -85,11 +112,19 @@ def _legend(figure: Figure, axes: Any, colors: Colormap, norm: BoundaryNorm) -> 
     bar.outline.set_visible(False)
 
 
-def over_picture(picture: bytes, cells: Cells, projection: Projection) -> tuple[bytes, int | None]:
-    """Draw the occupied leaves over the picture; the depth to which they are drawn, if limited."""
+def over_picture(
+    picture: bytes, cells: Cells, projection: Projection, seen: Floats | None
+) -> tuple[bytes, int | None]:
+    """Draw the occupied leaves over the picture, only those with points that are seen, if given.
+
+    The second value is the depth to which they are drawn, if that is limited.
+    """
     pixels = imread(io.BytesIO(picture), format="png")[..., :3]
     height, width = pixels.shape[:2]
-    bounds, depth, limit = coarsened(cells)
+    chosen = occupied(cells)
+    if seen is not None:
+        chosen &= holding(cells, seen)
+    bounds, depth, limit = coarsened(cells, chosen)
     shallowest, deepest = (int(depth.min()), int(depth.max())) if len(depth) else (0, 0)
     colors, norm = _depth_colors(deepest, shallowest)
     with drawn("wires", 10, 9.2 * height / width) as figure:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from octray.lab import cells, charts, figures, heat
 from octray.lab.figure import data_uri
-from octray.lab.projection import Projection
+from octray.lab.projection import view
 from octray.lab.result import Status
 from octray.lab.selection import YARDSTICK
 from octray.lab.table import ABSENT, COLUMNS, number, row
@@ -262,10 +262,9 @@ def _octree(report: Report, cut: tuple[int, float] | None) -> str:
     if not drawn:
         return ""
     parts = ["<h2>The cells</h2>"]
-    octrees = [name for name in drawn if not name.startswith("grid")]
     camera = report.scene["camera"]
-    if octrees and camera is not None and report.drawings.picture is not None:
-        parts.append(_wires(report, octrees[0], camera))
+    if report.drawings.framed is not None and report.drawings.picture is not None:
+        parts.append(_wires(report, report.drawings.framed, camera))
     plane = cut or cells.middle(next(iter(drawn.values())), camera, report.scene["bounds"])
     groups = cells.distinct(drawn)
     label = f"Slice through the cells at {'xyz'[plane[0]]} = {plane[1]:.6g}"
@@ -288,14 +287,10 @@ def _octree(report: Report, cut: tuple[int, float] | None) -> str:
 
 
 def _wires(report: Report, method: str, camera: dict[str, Any]) -> str:
-    crop = report.options["crop"]
-    projection = Projection(
-        camera,
-        tuple(report.options["size"]),
-        (crop[0], crop[1]) if crop else (0, 0),
-    )
-    picture = report.drawings.picture or b""
-    png, limit = cells.over_picture(picture, report.drawings.cells[method], projection)
+    projection, _ = view(camera, report.options["size"], report.options["crop"])
+    drawings = report.drawings
+    picture, seen = drawings.picture or b"", drawings.seen
+    png, limit = cells.over_picture(picture, drawings.cells[method], projection, seen)
     coarse = (
         ""
         if limit is None
@@ -306,8 +301,9 @@ def _wires(report: Report, method: str, camera: dict[str, Any]) -> str:
     return _figure(
         _image(png, label),
         label,
-        f"The leaves of <code>{_escape(method)}</code> that hold something, as frames over the"
-        f" picture, coloured by depth. Frames behind the surfaces are drawn too.{coarse}",
+        f"The leaves of <code>{_escape(method)}</code> in which the surfaces lie that one sees, as"
+        f" frames over the picture, coloured by depth: the builder divides where it expects to save"
+        f" tests.{coarse}",
     )
 
 

@@ -129,6 +129,9 @@ class Drawings:
     picture: bytes | None = None
     #: Cost of every pixel by method, (height, width, 3): steps, surfaces and triangles tested.
     cost: dict[str, npt.NDArray[np.float32]] = field(default_factory=dict)
+    #: Points of the scene that the picture shows, (n, 3), and the method whose cells go with it.
+    seen: npt.NDArray[np.float64] | None = None
+    framed: str | None = None
     #: Cells by method: ``bounds`` (n, 2, 3), ``depth`` (n), ``kind`` (n).
     cells: dict[str, dict[str, npt.NDArray[Any]]] = field(default_factory=dict)
 

@@ -119,6 +119,12 @@ class Worker:
         save(Path(file), image.to_numpy())
         return {}
 
+    def do_seen(self, rays: str, file: str) -> dict[str, Any]:
+        """Leave in a file the points where rays first meet something."""
+        hits = self.scene.cast_rays(np.load(rays), accel=self.accel)
+        save(Path(file), hits.position[hits.hit])
+        return {}
+
     def do_cells(self, file: str) -> dict[str, Any]:
         """Leave the cells in a file; without one if the method has none."""
         cells = self._figure("cells")
