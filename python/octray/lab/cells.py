@@ -31,21 +31,12 @@ if TYPE_CHECKING:
 #: Boxes drawn over a picture at most: more of them hide what they show.
 MOST_BOXES = 2500
 _AXES = "xyz"
-#: What a cell that holds something is called.
-OCCUPIED = "occupied"
-
-
-def occupied(cells: Cells) -> npt.NDArray[np.bool_]:
-    """Say which cells hold something."""
-    full: npt.NDArray[np.bool_] = np.asarray(cells["kind"]) == OCCUPIED
-    return full
 
 
 def _root(cells: Cells) -> tuple[Floats, Floats]:
     """Give the lowest corner and the sides of the box that these cells divide."""
-    bounds, depth = np.asarray(cells["bounds"], dtype=np.float64), np.asarray(cells["depth"])
-    root = ((bounds[:, 1] - bounds[:, 0]) * 2.0 ** depth[:, None]).max(axis=0)
-    return bounds[:, 0].min(axis=0), root
+    low, high = cells["root"]
+    return low, high - low
 
 
 def _places(points: Floats, low: Floats, root: Floats, depth: int) -> npt.NDArray[np.int64]:
@@ -58,7 +49,7 @@ def _places(points: Floats, low: Floats, root: Floats, depth: int) -> npt.NDArra
 
 def holding(cells: Cells, points: Floats) -> npt.NDArray[np.bool_]:
     """Say which cells have one of these points (n, 3) in them."""
-    bounds, depth = np.asarray(cells["bounds"], dtype=np.float64), np.asarray(cells["depth"])
+    bounds, depth = cells["bounds"], cells["depth"]
     low, root = _root(cells)
     found = np.zeros(len(depth), dtype=bool)
     for level in np.unique(depth):
@@ -78,8 +69,8 @@ def coarsened(
     depth is the third value, ``None`` if all are drawn as they are.
     """
     low, root = _root(cells)
-    bounds = np.asarray(cells["bounds"], dtype=np.float64)[chosen]
-    depth = np.asarray(cells["depth"])[chosen].astype(int)
+    bounds = cells["bounds"][chosen]
+    depth = cells["depth"][chosen].astype(int)
     if len(bounds) <= most:
         return bounds, depth, None
     limit = int(depth.max())
@@ -121,7 +112,7 @@ def over_picture(
     """
     pixels = imread(io.BytesIO(picture), format="png")[..., :3]
     height, width = pixels.shape[:2]
-    chosen = occupied(cells)
+    chosen = cells["occupied"].copy()
     if seen is not None:
         chosen &= holding(cells, seen)
     bounds, depth, limit = coarsened(cells, chosen)
@@ -152,16 +143,15 @@ def over_picture(
 
 def through(cells: Cells, axis: int, value: float) -> npt.NDArray[np.bool_]:
     """Say which cells the plane where ``axis`` is ``value`` passes; at a face, the upper one."""
-    bounds = np.asarray(cells["bounds"])
+    bounds = cells["bounds"]
     top = bounds[:, 1, axis]
-    last = (value == top.max()) & (top == value)
+    last = (value == cells["root"][1, axis]) & (top == value)
     return np.asarray(((bounds[:, 0, axis] <= value) & (value < top)) | last)
 
 
 def middle(cells: Cells, camera: dict[str, Any] | None, bounds: Any) -> tuple[int, float]:
     """Choose the plane of a slice: through the scene's middle, and seen from the front."""
-    box = np.asarray(cells["bounds"])
-    low, high = (box[:, 0].min(axis=0), box[:, 1].max(axis=0)) if bounds is None else bounds
+    low, high = cells["root"] if bounds is None else bounds
     axis = 2 if camera is None else int(np.abs(camera["forward"]).argmax())
     return axis, float(low[axis] + high[axis]) / 2
 
@@ -170,8 +160,8 @@ def _slice(axes: Axes, cells: Cells, plane: tuple[int, float], colors: Any, norm
     axis, value = plane
     across, up = [a for a in range(3) if a != axis]
     hit = through(cells, axis, value)
-    bounds, depth = np.asarray(cells["bounds"])[hit], np.asarray(cells["depth"])[hit]
-    full = occupied(cells)[hit]
+    bounds, depth = cells["bounds"][hit], cells["depth"][hit]
+    full = cells["occupied"][hit]
     low, high = bounds[:, 0], bounds[:, 1]
     square = np.stack(
         [
@@ -186,7 +176,7 @@ def _slice(axes: Axes, cells: Cells, plane: tuple[int, float], colors: Any, norm
     axes.add_collection(
         PolyCollection(list(square), facecolors=shade, edgecolors="white", linewidths=0.25)
     )
-    first, last = bounds[:, 0].min(axis=0), bounds[:, 1].max(axis=0)
+    first, last = cells["root"]
     axes.set_xlim(first[across], last[across])
     axes.set_ylim(first[up], last[up])
     axes.set_aspect("equal")
@@ -201,8 +191,8 @@ def distinct(cells: Mapping[str, Cells]) -> list[list[str]]:
     """Group the methods that have the same cells."""
     groups: dict[bytes, list[str]] = {}
     for method, arrays in cells.items():
-        parts = [np.ascontiguousarray(arrays[name]).tobytes() for name in ("bounds", "depth")]
-        groups.setdefault(b"".join([*parts, occupied(arrays).tobytes()]), []).append(method)
+        parts = [arrays[name].tobytes() for name in ("bounds", "depth", "occupied")]
+        groups.setdefault(b"".join(parts), []).append(method)
     return list(groups.values())
 
 
@@ -211,7 +201,7 @@ def slices(
 ) -> bytes:
     """Draw the plane's slice through the cells of the first method of every group."""
     shown = [cells[methods[0]] for methods in groups]
-    depths = [np.asarray(arrays["depth"])[through(arrays, *plane)] for arrays in shown]
+    depths = [arrays["depth"][through(arrays, *plane)] for arrays in shown]
     deepest = max((int(d.max()) for d in depths if len(d)), default=0)
     shallowest = min((int(d.min()) for d in depths if len(d)), default=0)
     colors, norm = _depth_colors(deepest, shallowest)
