@@ -191,7 +191,9 @@ def distinct(cells: Mapping[str, Cells]) -> list[list[str]]:
     """Group the methods that have the same cells."""
     groups: dict[bytes, list[str]] = {}
     for method, arrays in cells.items():
-        parts = [arrays[name].tobytes() for name in ("bounds", "depth", "occupied")]
+        # Structures list their cells in different orders.
+        order = np.lexsort([*arrays["bounds"][:, 0].T, arrays["depth"]])
+        parts = [arrays[name][order].tobytes() for name in ("bounds", "depth", "occupied")]
         groups.setdefault(b"".join(parts), []).append(method)
     return list(groups.values())
 

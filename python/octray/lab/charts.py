@@ -166,6 +166,8 @@ def work(combinations: Sequence[Combination]) -> str | None:
                     for row, costs in enumerate(f.per_ray_by_kind for f in found)
                     if costs and costs[kind]["rays"] and all(n in costs[kind] for n in names)
                 ]
+                if not points:
+                    continue
                 shown += [value for value, _ in points]
                 axes.plot(
                     [value for value, _ in points],

@@ -132,8 +132,9 @@ def octree_section(report: Report, cut: tuple[int, float] | None) -> str:
         framed(
             picture_element(cells.slices(drawn, groups, plane), label),
             label,
-            f"{label}. Full colours are cells that hold something, pale ones are empty; the colour"
-            " is the depth. Methods with the same cells share a panel"
+            f"{label}. Full colours are cells that hold something, pale ones are empty, what is"
+            " white is not kept at all; the colour is the depth, 0 for a grid. Methods with the"
+            " same cells share a panel"
             f"{': ' + same if same else ''}.",
         )
     )
