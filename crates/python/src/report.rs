@@ -99,6 +99,7 @@ pub(crate) fn rendering(
         "cost",
         hottest.map(|high| heat_scale(py, high)).transpose()?,
     )?;
+
     structures::add(py, &report, prepared)?;
     Ok(report.unbind())
 }
