@@ -13,7 +13,7 @@ pub(crate) enum Preset {
     Usual,
     /// Far more cells than pay.
     Fine,
-    /// Three divisions at most.
+    /// Four divisions at most.
     Shallow,
     /// Memory for a few cells only.
     Cramped,
@@ -38,12 +38,12 @@ impl Preset {
             },
             Self::Shallow => Criteria {
                 visit_cost: 0.1,
-                max_depth: 3,
+                max_depth: 4,
                 ..usual
             },
             Self::Cramped => Criteria {
                 visit_cost: 0.1,
-                memory_limit: 16 << 10,
+                memory_limit: 256 << 10,
                 ..usual
             },
         }

@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use octray::math::{Aabb, DVec3, Ray, hash_combine, unit_f64};
-use octray::render::{Film, RenderConfig, render};
+use octray::render::{Film, RenderConfig, RenderError, render};
 use octray::world::{Chord, Counters, Hit, Overlaps, RayQuery, Region, World, WorldConfig};
 use rayon::prelude::*;
 
@@ -49,7 +49,7 @@ impl Evidence {
             },
             Ok(world) => Self {
                 refusal: None,
-                film: questions.picture.map(|size| picture(&world, size)),
+                film: questions.picture.and_then(|size| picture(&world, size)),
                 answers: answers(&world, questions.rays),
             },
         }
@@ -96,14 +96,18 @@ fn pixels(film: &Film) -> impl Iterator<Item = (u32, u32)> {
     (0..height).flat_map(move |y| (0..width).map(move |x| (x, y)))
 }
 
-fn picture(world: &World, size: (u32, u32)) -> Film {
+/// `None` where there is nothing to aim a camera at.
+fn picture(world: &World, size: (u32, u32)) -> Option<Film> {
     let config = RenderConfig {
         size: Some(size),
         ..RenderConfig::default()
     };
-    let rendering = render(world, None, &config, &()).expect("a camera");
+    let rendering = match render(world, None, &config, &()) {
+        Err(RenderError::NoCamera) => return None,
+        rendering => rendering.expect("a picture"),
+    };
     assert!(rendering.is_complete());
-    rendering.film
+    Some(rendering.film)
 }
 
 /// The ray of this number about a scene: from around it or from within, towards points in it; every
