@@ -3,10 +3,11 @@
 use std::ops::Range;
 
 use octray::math::{Aabb, DVec3, Ray, hash_combine, unit_f64};
-use octray::render::{Film, RenderConfig, RenderError, render};
+use octray::render::{Film, RenderConfig, RenderError, Rendering, render};
 use octray::world::{Chord, Counters, Hit, Overlaps, RayQuery, Region, World, WorldConfig};
 use rayon::prelude::*;
 
+use crate::combination::Combination;
 use crate::scenes::Specimen;
 
 /// What is asked of a world.
@@ -49,7 +50,10 @@ impl Evidence {
             },
             Ok(world) => Self {
                 refusal: None,
-                film: questions.picture.and_then(|size| picture(&world, size)),
+                film: questions
+                    .picture
+                    .and_then(|size| picture(&world, size))
+                    .map(|r| r.film),
                 answers: answers(&world, questions.rays),
             },
         }
@@ -97,7 +101,7 @@ fn pixels(film: &Film) -> impl Iterator<Item = (u32, u32)> {
 }
 
 /// `None` where there is nothing to aim a camera at.
-fn picture(world: &World, size: (u32, u32)) -> Option<Film> {
+fn picture(world: &World, size: (u32, u32)) -> Option<Rendering> {
     let config = RenderConfig {
         size: Some(size),
         ..RenderConfig::default()
@@ -107,7 +111,18 @@ fn picture(world: &World, size: (u32, u32)) -> Option<Film> {
         rendering => rendering.expect("a picture"),
     };
     assert!(rendering.is_complete());
-    Some(rendering.film)
+    Some(rendering)
+}
+
+/// Intersection tests that brute force makes for a picture: the work that the scene is.
+pub(crate) fn brute_force_tests(specimen: &Specimen, size: (u32, u32)) -> u64 {
+    let config = Combination::BRUTE.config();
+    let world = World::prepare(specimen.scene.clone(), &config);
+    let rendering = world.ok().and_then(|world| picture(&world, size));
+    rendering.map_or(0, |rendering| {
+        let cost = rendering.stats.queries.total();
+        cost.surface_tests + cost.triangle_tests
+    })
 }
 
 /// The ray of this number about a scene: from around it or from within, towards points in it; every

@@ -1,9 +1,10 @@
 //! One suite for every method over whole scenes: pictures and answers to the bit as by brute force.
 //!
-//! By default small scenes (up to 2,000 primitives) are rendered by every method; larger ones, smaller,
-//! by a selection of combinations that has every pair; large meshes are asked by rays.
+//! By default small scenes (up to 2,000 primitives, and not much work) are rendered by every method.
+//! The rest is dealt a selection of combinations that has every pair, with smaller pictures; large
+//! meshes are asked by rays.
 //! `OCTRAY_CONFORMANCE=full` (what `make conformance` sets) takes the full product and the full size
-//! everywhere and says how far it is;
+//! everywhere;
 //! `OCTRAY_CONFORMANCE_SCENE` takes only the scenes whose name contains its value.
 
 mod combination;
@@ -12,16 +13,20 @@ mod corpus;
 mod evidence;
 mod scenes;
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use combination::{Combination, pairwise, product, usual};
-use evidence::{Evidence, Questions};
+use evidence::{Evidence, Questions, brute_force_tests};
 use rayon::prelude::*;
 use scenes::{Collection, Specimen};
 
-/// Scenes of more primitives are not rendered by every method by default.
+/// Scenes of more primitives are not small.
 const SMALL: usize = 2_000;
+/// Nor are those of which brute force, for 16 x 12 pixels, makes more intersection tests.
+const LITTLE_WORK: u64 = 60_000;
+/// The selection goes round among so many large scenes, or meshes.
+const HANDS: usize = 4;
 
 /// How a scene is looked at.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -33,23 +38,40 @@ enum Class {
 
 impl Class {
     fn of(specimen: &Specimen) -> Self {
-        match (specimen.primitives <= SMALL, specimen.is_mesh) {
-            (true, _) => Self::Small,
-            (false, false) => Self::Large,
-            (false, true) => Self::Mesh,
+        if specimen.primitives > SMALL {
+            let is_mesh = specimen.is_mesh;
+            return if is_mesh { Self::Mesh } else { Self::Large };
+        }
+        if brute_force_tests(specimen, PREVIEW) > LITTLE_WORK {
+            Self::Large
+        } else {
+            Self::Small
         }
     }
 
-    /// Brute force takes time, and many combinations are not much better on large scenes.
     const fn questions(self, full: bool) -> Questions {
         let (picture, rays) = match (self, full) {
             (Self::Small, _) | (Self::Large, true) => (Some((64, 48)), 64),
-            (Self::Large, false) => (Some((16, 12)), 64),
+            (Self::Large, false) => (Some(PREVIEW), 64),
             (Self::Mesh, _) => (None, 2_000),
         };
         Questions { picture, rays }
     }
+
+    /// The combinations for one of the class, by its place there.
+    fn combinations(self, place: usize, full: bool) -> Vec<Combination> {
+        match (self, full) {
+            (_, true) => product(),
+            (Self::Small, _) => usual(),
+            (Self::Large | Self::Mesh, _) => {
+                let all = pairwise().into_iter().skip(place % HANDS);
+                all.step_by(HANDS).collect()
+            }
+        }
+    }
 }
+
+const PREVIEW: (u32, u32) = (16, 12);
 
 /// One scene's share of the work.
 struct Subject {
@@ -62,7 +84,7 @@ struct Subject {
 #[derive(Default)]
 struct Row {
     scenes: usize,
-    combinations: usize,
+    combinations: BTreeSet<String>,
     worlds: usize,
     pixels: u64,
     rays: u64,
@@ -84,36 +106,34 @@ fn every_method_shows_what_brute_force_shows() {
     }
     specimens.retain(|specimen| specimen.name.contains(&only));
     let subjects = distinct(specimens, full);
-    let combinations = |class: Class| match (full, class) {
-        (true, _) => product(),
-        (false, Class::Small) => usual(),
-        (false, Class::Large | Class::Mesh) => pairwise(),
-    };
+    let mut places: BTreeMap<Class, usize> = BTreeMap::new();
+    let mut work = Vec::new();
+    for subject in &subjects {
+        let place = places.entry(subject.class).or_default();
+        work.push((subject, subject.class.combinations(*place, full)));
+        *place += 1;
+    }
     let done = AtomicUsize::new(0);
-    let look = |subject: &Subject| {
-        let found: Vec<String> = combinations(subject.class)
-            .par_iter()
-            .filter_map(|combination| subject.difference(combination))
-            .collect();
+    let look = |(subject, combinations): &(&Subject, Vec<Combination>)| {
+        let difference = |combination| subject.difference(combination);
+        let found: Vec<String> = combinations.par_iter().filter_map(difference).collect();
         let done = done.fetch_add(1, Ordering::Relaxed) + 1;
-        if full {
-            let (name, all) = (&subject.specimen.name, subjects.len());
-            eprintln!("{done} of {all}: {name}, {} differences", found.len());
-        }
+        let (name, all) = (&subject.specimen.name, subjects.len());
+        eprintln!("{done} of {all}: {name}, {} differences", found.len());
         found
     };
-    let found: Vec<Vec<String>> = subjects.par_iter().map(look).collect();
+    let found: Vec<Vec<String>> = work.par_iter().map(look).collect();
 
     let mut table: BTreeMap<Class, Row> = BTreeMap::new();
-    for (subject, found) in subjects.iter().zip(&found) {
+    for ((subject, combinations), found) in work.iter().zip(&found) {
         let row = table.entry(subject.class).or_default();
-        let combinations = combinations(subject.class).len();
         let (pixels, rays) = subject.brute.counts();
         row.scenes += 1;
-        row.combinations = combinations;
-        row.worlds += combinations;
-        row.pixels += pixels * combinations as u64;
-        row.rays += rays * combinations as u64;
+        row.combinations
+            .extend(combinations.iter().map(ToString::to_string));
+        row.worlds += combinations.len();
+        row.pixels += pixels * combinations.len() as u64;
+        row.rays += rays * combinations.len() as u64;
         row.differences += found.len();
     }
     println!("scenes   number  combinations  worlds     pixels       rays  differences");
@@ -122,7 +142,7 @@ fn every_method_shows_what_brute_force_shows() {
             "{:8} {:6} {:13} {:7} {:10} {:10} {:12}",
             format!("{class:?}").to_lowercase(),
             row.scenes,
-            row.combinations,
+            row.combinations.len(),
             row.worlds,
             row.pixels,
             row.rays,
@@ -177,4 +197,11 @@ fn distinct(specimens: Vec<Specimen>, full: bool) -> Vec<Subject> {
         }
     }
     subjects
+}
+
+#[test]
+fn the_hands_together_hold_the_selection() {
+    let hands = (0..HANDS).flat_map(|place| Class::Large.combinations(place, false));
+    let names: BTreeSet<String> = hands.map(|c| c.to_string()).collect();
+    assert_eq!(names, pairwise().iter().map(ToString::to_string).collect());
 }
