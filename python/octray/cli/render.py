@@ -17,6 +17,8 @@ from octray.cli.options import (
     quiet_option,
     scene_argument,
     threads_option,
+    tree_options,
+    tree_values,
 )
 from octray.cli.output import Output
 from octray.cli.progress import Progress, duration
@@ -41,18 +43,7 @@ if TYPE_CHECKING:
     help="Samples per pixel; 1 is the pixel's centre.",
 )
 @accel_option
-@click.option(
-    "--tree-depth",
-    type=click.IntRange(0, 21),
-    metavar="N",
-    help="Deepest level of the octree over solids; 16 by default.",
-)
-@click.option(
-    "--tree-memory",
-    type=click.IntRange(min=0),
-    metavar="MIB",
-    help="Most memory of an octree in MiB; what does not fit stays undivided.",
-)
+@tree_options
 @threads_option
 @click.option(
     "--view",
@@ -150,12 +141,8 @@ class _Run:
         output = self.output = Output(options["output"], self.path)
         scene = self._load()
         with self._phase("build"):
-            memory = options["tree_memory"]
             scene.prepare(
-                accel=options["accel"],
-                threads=options["threads"],
-                tree_depth=options["tree_depth"],
-                tree_memory=None if memory is None else memory << 20,
+                accel=options["accel"], threads=options["threads"], **tree_values(options)
             )
         image = self._trace(scene, output)
         self.report.add_rendering(image.report)
