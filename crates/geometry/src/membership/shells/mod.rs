@@ -58,7 +58,11 @@ fn region(primitive: &Primitive, scene_from_local: &DAffine3, within: &Aabb) -> 
     // Boxes reach beyond what touches their faces.
     let slack = 1e-9 * own.intersection(seen).size().max_element();
     let region = own.inflated(slack.max(0.0)).intersection(seen);
-    if region.is_bounded() { region } else { seen }
+    if region.is_bounded() || region.is_empty() {
+        region
+    } else {
+        seen
+    }
 }
 
 /// The shells of a primitive's boundary in `within`, where what has no end is cut off.
@@ -83,6 +87,12 @@ pub fn shells(
     let stretch = stretch(scene_from_local);
     let aim = (chord_error / stretch).max(0.0);
     let region = region(primitive, scene_from_local, within);
+    if region.is_empty() {
+        return Shells {
+            patches: Vec::new(),
+            chord_error: 0.0,
+        };
+    }
     let layered = |crosses: &dyn Fn(&Aabb) -> bool| {
         let m = scene_from_local.matrix3;
         let scale = DVec3::new(m.x_axis.length(), m.y_axis.length(), m.z_axis.length());

@@ -5,8 +5,9 @@ use std::ops::AddAssign;
 use octray_math::{Aabb, DAffine3, DVec3};
 use octray_tree::triangle_cube::{Step, triangle_meets_cube};
 
-/// A piece of a surface: it lies in the convex hull of two triangles, one inside the surface and one
-/// outside.
+/// A piece of a surface: while one triangle is blended into the other, corner by corner, it passes every
+/// point of the piece. So the piece lies in the convex hull of both, and so do the pieces of a patch that
+/// is cut.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ShellPatch {
     /// Of the inscribed shell.
@@ -114,7 +115,7 @@ impl ShellPatch {
         ];
         let largest = points
             .iter()
-            .fold(half, |largest, p| largest.max(p.abs()))
+            .fold(half.max(center.abs()), |largest, p| largest.max(p.abs()))
             .max_element();
         let separates = |axis: DVec3| {
             let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
@@ -124,7 +125,8 @@ impl ShellPatch {
                 high = high.max(x);
             }
             let size = axis.abs();
-            let reach = size.dot(half) + 16.0 * f64::EPSILON * (size.x + size.y + size.z) * largest;
+            let slack = 16.0 * f64::EPSILON * (size.x + size.y + size.z) * largest;
+            let reach = size.dot(half) + slack + f64::MIN_POSITIVE;
             low > reach || high < -reach
         };
         let edges = |t: usize| {

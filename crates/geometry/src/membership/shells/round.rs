@@ -108,7 +108,8 @@ pub(super) fn frustum(
     let largest = radius[0].max(radius[1]);
     let relative = (chord_error / largest).clamp(1e-7, 1.0);
     let wanted = libm::ceil(PI / half_angle(relative)).clamp(6.0, 1e5) as u32;
-    let n = wanted.min((limit as u32 / 4).max(6));
+    let most = u32::try_from(limit / 4).unwrap_or(u32::MAX).max(6);
+    let n = wanted.min(most);
     let scale = ROUNDING / libm::cos(PI / f64::from(n));
     let ring = |i: u32, end: usize, scale: f64| {
         direction(i, n) * (radius[end] * scale) + DVec3::Z * z[end]
@@ -152,19 +153,32 @@ pub(super) fn torus(minor: f64, chord_error: f64, limit: usize) -> (Vec<ShellPat
     let (du, dv) = (TAU / f64::from(nu), TAU / f64::from(nv));
     let (fixed, relative) = (du * du / 8.0, (du + dv) * (du + dv) / 8.0);
     // Every triangle of the one net has a tube distance of at most `minor`, of the other of at least that.
-    let inside = ((minor - fixed) / (1.0 + relative) / ROUNDING).max(0.0);
-    let outside = (minor + fixed) / (1.0 - relative) * ROUNDING;
+    let slack = 1e-14 * (1.0 + minor);
+    let inside = ((minor - fixed) / (1.0 + relative) / ROUNDING - slack).max(0.0);
+    let outside = (minor + fixed) / (1.0 - relative) * ROUNDING + slack;
     // A spindle's profile goes from the axis to the axis.
     let half_turn = |r: f64| if r > 1.0 { libm::acos(-1.0 / r) } else { PI };
-    let point = |r: f64, i: u32, j: u32| {
+    // Where only the outer net reaches the axis, a membrane closes the hole of the inner one: then both
+    // are nets from pole to pole, and blend without a gap.
+    let membrane = outside > 1.0 && inside <= 1.0;
+    let rows = if membrane { nv + 2 } else { nv };
+    let point = |r: f64, i: u32, row: u32| {
+        if membrane && r <= 1.0 && (row == 0 || row == rows) {
+            return DVec3::ZERO;
+        }
+        let j = if membrane {
+            row.clamp(1, nv + 1) - 1
+        } else {
+            row
+        };
         let j = if r > 1.0 { j } else { j % nv };
         let v = half_turn(r) * (2.0 * f64::from(j) / f64::from(nv) - 1.0);
         let from_axis = (1.0 + r * libm::cos(v)).max(0.0);
         direction(i, nu) * from_axis + DVec3::Z * (r * libm::sin(v))
     };
-    let mut patches = Vec::with_capacity(2 * nu as usize * nv as usize);
+    let mut patches = Vec::with_capacity(2 * nu as usize * rows as usize);
     let both = |i: u32, j: u32| [inside, outside].map(|r| point(r, i, j));
-    net(nu, nv, both, &mut patches);
+    net(nu, rows, both, &mut patches);
     (
         patches,
         outside - inside + 2.0 * (fixed + relative * outside),

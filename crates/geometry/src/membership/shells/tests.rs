@@ -188,6 +188,9 @@ fn primitives() -> Vec<(&'static str, Solid)> {
         ("torus", good(Solid::torus(1.0, 0.3))),
         ("thin torus", good(Solid::torus(1.0, 1e-3))),
         ("spindle", good(Solid::torus(0.6, 1.0))),
+        ("nearly a horn", good(Solid::torus(1.0, 0.99))),
+        ("horn", good(Solid::torus(1.0, 1.0))),
+        ("hardly a spindle", good(Solid::torus(1.0, 1.001))),
         ("saddle", saddle),
         ("pyramid", Solid::primitive(tower)),
         ("prism", good(Solid::prism(&region(), -0.5, 0.8))),
@@ -294,7 +297,9 @@ fn shells_stay_as_close_to_the_surface_as_they_say() {
         );
         // Corners of the shells are near the surface, as far as the sampling tells.
         let sampling = 0.1 * size;
-        if primitive.bounds().is_bounded() {
+        // The formula of a composite is not decided where its pieces touch inside of it.
+        let is_composite = matches!(primitive, Primitive::Composite(_));
+        if primitive.bounds().is_bounded() && !is_composite {
             for patch in shells.patches.iter().step_by(7) {
                 for corner in patch.inner.iter().chain(&patch.outer) {
                     let near = points.iter().map(|p| p.distance_squared(*corner));
