@@ -1,0 +1,67 @@
+"""Runs one job through ``octray.lab`` and keeps of its report what the conclusions need."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from octray import lab
+from results import Measured, Row
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from plan import Job, Mode
+
+#: What one method may take beyond its scene.
+MEMORY_BYTES = 4 << 30
+
+
+def measure(job: Job, path: Path, shapes: int, mode: Mode, budget: float) -> Measured:
+    """Run the job on the scene in ``path``, in at most ``budget`` seconds."""
+    report = lab.run(
+        path,
+        accel=job.methods,
+        repeat=mode.repeat,
+        size=mode.size,
+        tree=job.tree,
+        memory=MEMORY_BYTES,
+        timeout=job.timeout,
+        budget=budget,
+    ).to_dict()
+    if report["interrupted"]:
+        raise KeyboardInterrupt
+    rows = [row_of(combination) for combination in report["combinations"]]
+    return Measured(
+        job.experiment, job.scene, job.shapes, shapes, job.label, rows, report["reference"]
+    )
+
+
+def row_of(found: dict[str, Any]) -> Row:
+    """Take one method out of the lab's JSON object."""
+    depths = found["depth_histogram"]
+    leaves = found["objects_per_leaf"]
+    return Row(
+        method=found["method"],
+        status=found["status"],
+        message=found["message"],
+        build_s=found["build"]["median_s"],
+        render_s=found["render"]["median_s"],
+        relative=found["render"]["relative"],
+        bytes=found["memory"]["structure_bytes"],
+        parts=found["memory"]["parts"],
+        nodes=found["nodes"],
+        depth=None if not depths else max(i for i, n in enumerate(depths) if n),
+        objects_per_leaf=None if not leaves else _mean(leaves[1:], first=1),
+        marks=found["marks"],
+        triangle_cube_steps=found["triangle_cube_steps"],
+        table=found.get("table"),
+        rays=found["rays"],
+        per_ray=found["per_ray"],
+        per_ray_by_kind=found["per_ray_by_kind"],
+        same=found["picture"]["same"],
+    )
+
+
+def _mean(counts: list[int], first: int) -> float | None:
+    total = sum(counts)
+    return sum(i * n for i, n in enumerate(counts, first)) / total if total else None

@@ -1,0 +1,167 @@
+"""The experiments of the lab: which scenes of which size, by which methods, under which options."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
+
+from scenes.families import FAMILIES
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+ORDERED = "octree:tree:ordered:analytic"
+FUJIMOTO_IWATA = "octree:tree:fujimoto-iwata:analytic"
+SUNG = "octree:tree:sung:analytic"
+BEAM = "octree:tree:beam:analytic"
+LVSI = "octree:lvsi:sung:analytic"
+LVSI_EMPTY = "octree:lvsi-empty:sung:analytic"
+BY_BOX = "octree:tree:ordered:bounding-box"
+BY_SHELLS = "octree:tree:ordered:shells"
+
+#: What grows with the scene; the first four test every object, and go to 10^4 only.
+FLAT = ("brute", "spheres", "boxes")
+GROWING = ("auto", "grid", ORDERED, FUJIMOTO_IWATA, BEAM, LVSI, LVSI_EMPTY, BY_BOX)
+#: Where the CSG tree is what matters, and up to which size these builders are asked.
+OPERANDS = (BY_SHELLS, "octree:tree:ordered:bounding-cover")
+#: Not touched by any option about octrees: what the times of a sweep are measured by.
+CONTROL = "grid:32"
+
+
+@dataclass(frozen=True)
+class Job:
+    """One scene by some methods, in turns."""
+
+    #: ``comparison``, ``growth``, ``table`` or ``criteria``.
+    experiment: str
+    #: A family's name, or ``scan`` for the mesh of the corpus.
+    scene: str
+    #: About how many shapes.
+    shapes: int
+    #: The methods; none stands for the lab's own selection.
+    methods: tuple[str, ...] = ()
+    #: Keywords of ``Scene.prepare``, and the words for them in a table.
+    tree: dict[str, Any] = field(default_factory=dict)
+    label: str = ""
+    #: Seconds of one build or one rendering at most.
+    timeout: float = 20.0
+
+
+@dataclass(frozen=True)
+class Mode:
+    """How much is done."""
+
+    name: str
+    #: Width and height of the pictures, and how often each is rendered.
+    size: tuple[int, int]
+    repeat: int
+    #: Shapes of the scenes that all methods are compared on.
+    middle: int
+    #: Shapes of the growth curves, and the most that flat methods are asked.
+    growth: tuple[int, ...]
+    flat_limit: int
+    #: Families of the comparison, of the growth curves and of the sweeps.
+    compared: tuple[str, ...]
+    growing: tuple[str, ...]
+    swept: tuple[str, ...]
+    #: Seconds for everything.
+    budget: float
+    timeout: float
+
+
+MODES = {
+    mode.name: mode
+    for mode in (
+        Mode(
+            name="full",
+            size=(160, 120),
+            repeat=3,
+            middle=10_000,
+            growth=(100, 1_000, 10_000, 100_000, 1_000_000),
+            flat_limit=10_000,
+            compared=(*FAMILIES, "scan"),
+            growing=("balls", "mount", "drilled", "stadium"),
+            swept=("balls", "drilled", "stadium"),
+            budget=1150,
+            timeout=20,
+        ),
+        Mode(
+            name="quick",
+            size=(64, 48),
+            repeat=2,
+            middle=1_000,
+            growth=(100, 1_000, 10_000),
+            flat_limit=1_000,
+            compared=(*FAMILIES, "scan"),
+            growing=("balls", "drilled", "stadium"),
+            swept=("balls", "drilled"),
+            budget=75,
+            timeout=5,
+        ),
+        Mode(
+            name="tiny",
+            size=(16, 12),
+            repeat=1,
+            middle=100,
+            growth=(10, 100),
+            flat_limit=100,
+            compared=("balls", "stadium"),
+            growing=("balls", "drilled"),
+            swept=("balls",),
+            budget=60,
+            timeout=10,
+        ),
+    )
+}
+
+#: Sizes of the hash table. Both numbers lie close together, so that only their kind differs.
+TABLES: tuple[tuple[str, dict[str, Any]], ...] = (
+    ("prime", {"lvsi_table": "prime"}),
+    ("power of two", {"lvsi_table": "power-of-two"}),
+)
+
+#: One criterion changed at a time; the label names it.
+CRITERIA: tuple[tuple[str, str, dict[str, Any]], ...] = (
+    ("default", "default", {}),
+    *(("depth", f"depth <= {n}", {"tree_depth": n}) for n in (3, 5, 7, 9, 12)),
+    *(("objects", f"objects <= {n}", {"cell_objects": n}) for n in (1, 4, 16, 64)),
+    *(("share", f"share >= {x}", {"cell_share": x}) for x in (0.1, 0.5, 0.9)),
+    *(("cost", word, {"cell_cost": on}) for word, on in (("cost: no", False),)),
+    *(("memory", f"memory {n} MiB", {"tree_memory": n << 20}) for n in (1, 4)),
+)
+
+
+def jobs(mode: Mode) -> Iterator[Job]:
+    """Everything in order of importance: what the budget cuts off comes last."""
+    for scene in mode.compared:
+        yield Job("comparison", scene, mode.middle, timeout=mode.timeout)
+    ordinary = [n for n in mode.growth if n <= 10_000]
+    for shapes in ordinary:
+        yield from _growth(mode, shapes)
+    yield from _sweeps(mode)
+    for shapes in mode.growth:
+        if shapes not in ordinary:
+            yield from _growth(mode, shapes)
+
+
+def _growth(mode: Mode, shapes: int) -> Iterator[Job]:
+    for scene in mode.growing:
+        methods = GROWING
+        if shapes <= mode.flat_limit:
+            methods = (*FLAT, *methods)
+        if scene == "drilled":
+            methods = (*methods, *OPERANDS)
+        # Building a million takes longer than rendering it.
+        timeout = mode.timeout * (4 if shapes > 100_000 else 1)
+        yield Job("growth", scene, shapes, methods, timeout=timeout)
+
+
+def _sweeps(mode: Mode) -> Iterator[Job]:
+    for scene in mode.swept:
+        for label, tree in TABLES:
+            methods = (CONTROL, LVSI, LVSI_EMPTY)
+            yield Job("table", scene, mode.middle, methods, tree, label, mode.timeout)
+    for scene in mode.swept:
+        for _, label, tree in CRITERIA:
+            methods = (CONTROL, ORDERED)
+            yield Job("criteria", scene, mode.middle, methods, tree, label, mode.timeout)
