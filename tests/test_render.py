@@ -245,6 +245,22 @@ def test_the_report_counts_rays() -> None:
     assert report["complete"]
 
 
+def test_the_report_tells_what_each_kind_of_ray_cost() -> None:
+    scene = octray.Scene()
+    scene.add(octray.sphere(1), material=octray.Material.glass())
+    scene.add(octray.box((9, 9, 1)).translate(z=-3))
+    scene.add_light(octray.PointLight((0, 5, 9)))
+    report = scene.render(size=(32, 24)).report
+    kinds = report["tests_by_kind"]
+    assert set(kinds) == {"primary", "reflected", "refracted", "shadow"}
+    for kind, tests in kinds.items():
+        assert tests["rays"] == report["rays"][kind] > 0
+        assert tests["surfaces"] > 0
+    for name, average in report["tests_per_ray"].items():
+        total = sum(tests["rays"] * tests[name] for tests in kinds.values())
+        assert total == pytest.approx(average * report["rays"]["total"])
+
+
 def test_limits_of_the_octree_hold_are_reported_and_do_not_show() -> None:
     def picture(
         tree_depth: int | None = None, tree_memory: int | None = None

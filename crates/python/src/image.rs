@@ -93,6 +93,14 @@ impl Image {
     }
 
     /// What the rendering cost: times, rays, trees, memory.
+    ///
+    /// `rays` and `hits` count by kind of ray: `primary`, `reflected`, `refracted`, `shadow`, and
+    /// `total`. `tests_per_ray` says what one ray cost on average: `cells` of the solids' octree or
+    /// grid entered (or bounding volumes tested), `lookups` of hash rows or tree nodes to find them,
+    /// `nodes` of the triangles' octree entered, `surfaces` and `triangles` intersected.
+    /// `tests_by_kind` says the same for each kind, with the number of its `rays`: the sums over the
+    /// kinds of rays times tests are those of `tests_per_ray`. A shadow ray counts once, its tests
+    /// behind transparent surfaces included.
     #[getter]
     fn report<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         match &self.report {

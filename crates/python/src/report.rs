@@ -2,8 +2,8 @@
 
 use std::time::Duration;
 
-use octray::render::{RayCounts, Rendering};
-use octray::world::{CellTreeStats, WideTreeStats};
+use octray::render::{RayCounts, RenderStats, Rendering};
+use octray::world::{CellTreeStats, Counters, WideTreeStats};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
@@ -11,11 +11,33 @@ use crate::world::Prepared;
 
 fn rays<'py>(py: Python<'py>, counts: &RayCounts) -> PyResult<Bound<'py, PyDict>> {
     let dict = PyDict::new(py);
-    dict.set_item("primary", counts.primary)?;
-    dict.set_item("reflected", counts.reflected)?;
-    dict.set_item("refracted", counts.refracted)?;
-    dict.set_item("shadow", counts.shadow)?;
+    for (kind, count) in counts.named() {
+        dict.set_item(kind, count)?;
+    }
     dict.set_item("total", counts.total())?;
+    Ok(dict)
+}
+
+/// What one ray cost on average.
+fn tests<'py>(py: Python<'py>, cost: &Counters, rays: u64) -> PyResult<Bound<'py, PyDict>> {
+    let per_ray = |count: u64| count as f64 / rays.max(1) as f64;
+    let dict = PyDict::new(py);
+    dict.set_item("surfaces", per_ray(cost.surface_tests))?;
+    dict.set_item("triangles", per_ray(cost.triangle_tests))?;
+    dict.set_item("cells", per_ray(cost.cells))?;
+    dict.set_item("lookups", per_ray(cost.lookups))?;
+    dict.set_item("nodes", per_ray(cost.nodes))?;
+    Ok(dict)
+}
+
+/// The same for each kind of ray, with how many rays there were.
+fn tests_by_kind<'py>(py: Python<'py>, stats: &RenderStats) -> PyResult<Bound<'py, PyDict>> {
+    let dict = PyDict::new(py);
+    for ((kind, cost), (_, rays)) in stats.queries.named().into_iter().zip(stats.rays.named()) {
+        let kind_tests = tests(py, cost, *rays)?;
+        kind_tests.set_item("rays", rays)?;
+        dict.set_item(kind, kind_tests)?;
+    }
     Ok(dict)
 }
 
@@ -81,14 +103,9 @@ pub(crate) fn rendering(
     let stats = &rendering.stats;
     report.set_item("rays", rays(py, &stats.rays)?)?;
     report.set_item("hits", rays(py, &stats.hits)?)?;
-    let queries = &stats.queries;
-    let per_ray = |count: u64| count as f64 / stats.rays.total().max(1) as f64;
-    let tests = PyDict::new(py);
-    tests.set_item("surfaces", per_ray(queries.surface_tests))?;
-    tests.set_item("triangles", per_ray(queries.triangle_tests))?;
-    tests.set_item("cells", per_ray(queries.cells))?;
-    tests.set_item("nodes", per_ray(queries.nodes))?;
-    report.set_item("tests_per_ray", tests)?;
+    let all = tests(py, &stats.queries.total(), stats.rays.total())?;
+    report.set_item("tests_per_ray", all)?;
+    report.set_item("tests_by_kind", tests_by_kind(py, stats)?)?;
     report.set_item("replaced_contributions", stats.replaced_contributions)?;
     report.set_item("ended_by_generation", stats.ended_by_generation)?;
     report.set_item("ended_by_contribution", stats.ended_by_contribution)?;

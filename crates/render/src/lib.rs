@@ -30,5 +30,5 @@ pub use integrator::{Integrator, MAX_INTERFACES, ShadowTracer, Whitted, medium_o
 pub use light::{Illumination, illuminate};
 pub use path::{PathState, Queues, RayKind, ShadowState, to_single, to_vector};
 pub use sampler::{pixel_position, sample_key};
-pub use stats::{RayCounts, RenderStats};
+pub use stats::{ByKind, RayCounts, RenderStats};
 pub use tile::{OfPixel, Tile, TileFilm};

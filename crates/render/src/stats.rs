@@ -7,36 +7,56 @@ use octray_world::Counters;
 
 use crate::path::RayKind;
 
-/// Rays by kind.
+/// One value for each kind of ray.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct RayCounts {
-    /// From the camera.
-    pub primary: u64,
-    /// From mirrors, total internal reflection included.
-    pub reflected: u64,
-    /// Through surfaces, bent or not.
-    pub refracted: u64,
-    /// To lamps.
-    pub shadow: u64,
+pub struct ByKind<T> {
+    /// Of rays from the camera.
+    pub primary: T,
+    /// Of rays from mirrors, total internal reflection included.
+    pub reflected: T,
+    /// Of rays through surfaces, bent or not.
+    pub refracted: T,
+    /// Of rays to lamps.
+    pub shadow: T,
 }
 
-impl RayCounts {
-    /// All kinds together.
-    #[must_use]
-    pub const fn total(&self) -> u64 {
-        self.primary + self.reflected + self.refracted + self.shadow
+/// Rays by kind.
+pub type RayCounts = ByKind<u64>;
+
+impl<T> ByKind<T> {
+    /// Every kind's name with its value.
+    pub const fn named(&self) -> [(&'static str, &T); 4] {
+        [
+            ("primary", &self.primary),
+            ("reflected", &self.reflected),
+            ("refracted", &self.refracted),
+            ("shadow", &self.shadow),
+        ]
     }
 
-    pub(crate) const fn count(&mut self, kind: RayKind) {
+    /// The value of rays that bring light along a path.
+    pub(crate) const fn of_path(&mut self, kind: RayKind) -> &mut T {
         match kind {
-            RayKind::Primary => self.primary += 1,
-            RayKind::Reflected => self.reflected += 1,
-            RayKind::Refracted => self.refracted += 1,
+            RayKind::Primary => &mut self.primary,
+            RayKind::Reflected => &mut self.reflected,
+            RayKind::Refracted => &mut self.refracted,
         }
     }
 }
 
-impl AddAssign for RayCounts {
+impl<T: Copy + Default + AddAssign> ByKind<T> {
+    /// All kinds together.
+    #[must_use]
+    pub fn total(&self) -> T {
+        let mut total = T::default();
+        for (_, value) in self.named() {
+            total += *value;
+        }
+        total
+    }
+}
+
+impl<T: AddAssign> AddAssign for ByKind<T> {
     fn add_assign(&mut self, other: Self) {
         self.primary += other.primary;
         self.reflected += other.reflected;
@@ -62,8 +82,8 @@ pub struct RenderStats {
     pub replaced_contributions: u64,
     /// The most rays that waited in one tile.
     pub longest_queue: u64,
-    /// What the queries cost.
-    pub queries: Counters,
+    /// What the queries cost. Their `rays` count a shadow ray anew behind every surface it passes.
+    pub queries: ByKind<Counters>,
 }
 
 impl AddAssign for RenderStats {

@@ -29,6 +29,8 @@ pub(crate) struct TileRenderer<'a> {
     queues: Queues,
     slice: Vec<PathState>,
     queries: Vec<RayQuery>,
+    /// Of rays of a later kind.
+    run_hits: Vec<Hit>,
     hits: Vec<Hit>,
 }
 
@@ -58,6 +60,7 @@ impl<'a> TileRenderer<'a> {
             queues: Queues::default(),
             slice: Vec::new(),
             queries: Vec::new(),
+            run_hits: Vec::new(),
             hits: Vec::new(),
         }
     }
@@ -134,14 +137,28 @@ impl<'a> TileRenderer<'a> {
         let rest = waiting.saturating_sub(self.slice_length());
         self.slice.clear();
         self.slice.extend(self.queues.paths.drain(rest..).rev());
-        self.queries.clear();
-        self.queries.extend(self.slice.iter().map(PathState::query));
-        self.world
-            .closest(&self.queries, &mut self.hits, &mut stats.queries);
-        for (state, hit) in self.slice.iter().zip(&self.hits) {
-            stats.rays.count(state.kind);
-            if !hit.is_miss() {
-                stats.hits.count(state.kind);
+        // By kind, so that costs can be told apart; the film does not mind the order.
+        if !self.slice.is_sorted_by_key(|state| state.kind) {
+            self.slice.sort_by_key(|state| state.kind);
+        }
+        self.hits.clear();
+        for run in self.slice.chunk_by(|a, b| a.kind == b.kind) {
+            let kind = run[0].kind;
+            self.queries.clear();
+            self.queries.extend(run.iter().map(PathState::query));
+            let is_first = self.hits.is_empty();
+            let hits = if is_first {
+                &mut self.hits
+            } else {
+                &mut self.run_hits
+            };
+            let counters = stats.queries.of_path(kind);
+            self.world.closest(&self.queries, hits, counters);
+            let met = hits.iter().filter(|hit| !hit.is_miss()).count();
+            *stats.rays.of_path(kind) += run.len() as u64;
+            *stats.hits.of_path(kind) += met as u64;
+            if !is_first {
+                self.hits.append(&mut self.run_hits);
             }
         }
         self.integrator

@@ -96,3 +96,73 @@ def scene_argument(function: Callable[..., Any]) -> Callable[..., Any]:
     ):
         function = add(function)
     return function
+
+
+def picture_options(function: Callable[..., Any]) -> Callable[..., Any]:
+    """Add the options about which picture of a scene is rendered."""
+    for add in reversed(
+        (
+            click.option("--size", metavar="WxH", callback=parse_size, help="Size in pixels."),
+            click.option(
+                "--spp",
+                type=click.IntRange(min=1),
+                default=1,
+                show_default=True,
+                help="Samples per pixel; 1 is the pixel's centre.",
+            ),
+            click.option(
+                "--crop",
+                metavar="X0,Y0,X1,Y1",
+                callback=parse_crop,
+                help="Render only these pixels (row 0 at the top).",
+            ),
+            click.option(
+                "--viewall", is_flag=True, help="Move the camera to where it sees everything."
+            ),
+            click.option(
+                "--max-depth",
+                type=click.IntRange(min=1),
+                metavar="N",
+                help="Generations of rays; 1 is without mirrors and glass.",
+            ),
+            click.option(
+                "--threshold",
+                type=click.FloatRange(min=0),
+                metavar="X",
+                help="Rays that add less than this to a pixel are not followed.",
+            ),
+        )
+    ):
+        function = add(function)
+    return function
+
+
+def tree_options(function: Callable[..., Any]) -> Callable[..., Any]:
+    """Add the options about how far trees are divided."""
+    for add in reversed(
+        (
+            click.option(
+                "--tree-depth",
+                type=click.IntRange(0, 21),
+                metavar="N",
+                help="Deepest level of the octree over solids; 16 by default.",
+            ),
+            click.option(
+                "--tree-memory",
+                type=click.IntRange(min=0),
+                metavar="MIB",
+                help="Most memory of an octree in MiB; what does not fit stays undivided.",
+            ),
+        )
+    ):
+        function = add(function)
+    return function
+
+
+def tree_values(options: dict[str, Any]) -> dict[str, Any]:
+    """Give what ``tree_options`` asked for as keywords of ``Scene.prepare``."""
+    memory = options["tree_memory"]
+    return {
+        "tree_depth": options["tree_depth"],
+        "tree_memory": None if memory is None else memory << 20,
+    }

@@ -53,7 +53,7 @@ impl<'a> ShadowTracer<'a> {
         self.queries.clear();
         self.queries.extend(states.iter().map(ShadowState::query));
         self.world
-            .occluded(&self.queries, &mut self.blocked, &mut stats.queries);
+            .occluded(&self.queries, &mut self.blocked, &mut stats.queries.shadow);
         let open = (0..states.len()).filter(|i| !self.blocked[*i]);
         self.walks.clear();
         self.walks.extend(open.map(|i| Walk {
@@ -82,7 +82,7 @@ impl<'a> ShadowTracer<'a> {
     /// Takes every walk to its next surface, or to the lamp.
     fn step(&mut self, states: &[ShadowState], film: &mut TileFilm, stats: &mut RenderStats) {
         self.world
-            .closest(&self.queries, &mut self.hits, &mut stats.queries);
+            .closest(&self.queries, &mut self.hits, &mut stats.queries.shadow);
         let mut kept = 0;
         for index in 0..self.walks.len() {
             let (query, hit) = (self.queries[index], self.hits[index]);

@@ -1,5 +1,6 @@
 //! Pictures of scenes whose light is known by formula.
 
+mod costs;
 mod determinism;
 mod energy;
 mod eye;
