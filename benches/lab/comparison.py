@@ -85,8 +85,10 @@ def ratio(measured: Measured, quantity: Quantity, method: str, base: str) -> flo
     one, other = measured.row(method), measured.row(base)
     if one is None or other is None:
         return None
-    if quantity is seconds and one.relative is not None and other.relative is not None:
-        # The machine may have changed its mood between groups; each has its own yardstick.
+    if quantity is seconds and (one.relative is not None or other.relative is not None):
+        # Groups of methods, and brute force with its smaller pictures, have a yardstick each.
+        if one.relative is None or not other.relative:
+            return None
         return one.relative / other.relative
     a, b = quantity(one), quantity(other)
     return a / b if a is not None and b else None

@@ -64,7 +64,7 @@ def _add(found: dict[str, str], name: str, ratios: c.Ratios | None) -> None:
 
 
 def _ratios(results: Results, quantity: c.Quantity, method: str, base: str) -> c.Ratios | None:
-    """Over the scenes of the comparison; 1 for 1 where a method does not touch a scene."""
+    """Over the scenes of the comparison that both were run on."""
     return c.over_scenes(
         results.of("comparison"), quantity, method, base, lambda name: results.scene(name).title
     )
@@ -81,6 +81,8 @@ def _of_the_run(results: Results) -> dict[str, str]:
         "run.memory": c.in_bytes(results.machine.get("memory_bytes") or 0),
         "run.width": str(results.size[0]),
         "run.height": str(results.size[1]),
+        "run.small_width": str(results.small[0]),
+        "run.small_height": str(results.small[1]),
         "run.repeat": str(results.repeat),
         "run.minutes": c.short(results.seconds / 60),
         "run.rows": str(len(rows)),

@@ -21,8 +21,8 @@ def measure(job: Job, path: Path, shapes: int, mode: Mode, budget: float) -> Mea
     report = lab.run(
         path,
         accel=job.methods,
-        repeat=mode.repeat,
-        size=mode.size,
+        repeat=job.repeat or mode.repeat,
+        size=job.size or mode.size,
         tree=job.tree,
         memory=MEMORY_BYTES,
         timeout=job.timeout,
@@ -57,7 +57,7 @@ def row_of(found: dict[str, Any]) -> Row:
         table=found.get("table"),
         rays=found["rays"],
         per_ray=found["per_ray"],
-        per_ray_by_kind=found["per_ray_by_kind"],
+        per_ray_by_kind=_without_zeros(found["per_ray_by_kind"]),
         same=found["picture"]["same"],
     )
 
@@ -65,3 +65,8 @@ def row_of(found: dict[str, Any]) -> Row:
 def _mean(counts: list[int], first: int) -> float | None:
     total = sum(counts)
     return sum(i * n for i, n in enumerate(counts, first)) / total if total else None
+
+
+def _without_zeros(by_kind: dict[str, dict[str, float]] | None) -> dict[str, dict[str, float]]:
+    found = {kind: {k: v for k, v in costs.items() if v} for kind, costs in (by_kind or {}).items()}
+    return {kind: costs for kind, costs in found.items() if costs}

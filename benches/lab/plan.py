@@ -19,9 +19,11 @@ LVSI_EMPTY = "octree:lvsi-empty:sung:analytic"
 BY_BOX = "octree:tree:ordered:bounding-box"
 BY_SHELLS = "octree:tree:ordered:shells"
 
-#: What grows with the scene; the first four test every object, and go to 10^4 only.
-FLAT = ("brute", "spheres", "boxes")
+#: What grows with the scene. Flat methods test every object, and go to 10^4 only; of a million
+#: shapes fewer methods are asked, because building takes long.
+FLAT = ("spheres", "boxes")
 GROWING = ("auto", "grid", ORDERED, FUJIMOTO_IWATA, BEAM, LVSI, LVSI_EMPTY, BY_BOX)
+GROWN = ("grid", ORDERED, LVSI, LVSI_EMPTY, BY_BOX)
 #: Where the CSG tree is what matters, and up to which size these builders are asked.
 OPERANDS = (BY_SHELLS, "octree:tree:ordered:bounding-cover")
 #: Not touched by any option about octrees: what the times of a sweep are measured by.
@@ -32,7 +34,7 @@ CONTROL = "grid:32"
 class Job:
     """One scene by some methods, in turns."""
 
-    #: ``comparison``, ``growth``, ``table`` or ``criteria``.
+    #: ``comparison``, ``growth``, ``table``, ``criteria``; ``brute`` joins the growth before it.
     experiment: str
     #: A family's name, or ``scan`` for the mesh of the corpus.
     scene: str
@@ -45,6 +47,9 @@ class Job:
     label: str = ""
     #: Seconds of one build or one rendering at most.
     timeout: float = 20.0
+    #: What is other than in the mode.
+    size: tuple[int, int] | None = None
+    repeat: int | None = None
 
 
 @dataclass(frozen=True)
@@ -55,6 +60,8 @@ class Mode:
     #: Width and height of the pictures, and how often each is rendered.
     size: tuple[int, int]
     repeat: int
+    #: Width and height of the pictures along brute force's growth curve.
+    small: tuple[int, int]
     #: Shapes of the scenes that all methods are compared on.
     middle: int
     #: Shapes of the growth curves, and the most that flat methods are asked.
@@ -76,12 +83,13 @@ MODES = {
             name="full",
             size=(160, 120),
             repeat=3,
+            small=(24, 18),
             middle=10_000,
             growth=(100, 1_000, 10_000, 100_000, 1_000_000),
             flat_limit=10_000,
             compared=(*FAMILIES, "scan"),
             growing=("balls", "mount", "drilled", "stadium"),
-            swept=("balls", "drilled", "stadium"),
+            swept=("balls", "drilled", "rings", "tetra"),
             budget=1150,
             timeout=20,
         ),
@@ -89,19 +97,21 @@ MODES = {
             name="quick",
             size=(64, 48),
             repeat=2,
+            small=(24, 18),
             middle=1_000,
-            growth=(100, 1_000, 10_000),
+            growth=(100, 1_000),
             flat_limit=1_000,
             compared=(*FAMILIES, "scan"),
-            growing=("balls", "drilled", "stadium"),
-            swept=("balls", "drilled"),
-            budget=75,
-            timeout=5,
+            growing=("balls", "drilled"),
+            swept=("balls",),
+            budget=90,
+            timeout=2,
         ),
         Mode(
             name="tiny",
             size=(16, 12),
             repeat=1,
+            small=(8, 6),
             middle=100,
             growth=(10, 100),
             flat_limit=100,
@@ -146,14 +156,20 @@ def jobs(mode: Mode) -> Iterator[Job]:
 
 def _growth(mode: Mode, shapes: int) -> Iterator[Job]:
     for scene in mode.growing:
-        methods = GROWING
+        many = shapes > 100_000
+        methods = GROWN if many else GROWING
+        if scene == "mount" and many:
+            methods = ("auto", *methods)  # it has a structure of its own for triangles
         if shapes <= mode.flat_limit:
             methods = (*FLAT, *methods)
-        if scene == "drilled":
+        if scene == "drilled" and not many:
             methods = (*methods, *OPERANDS)
         # Building a million takes longer than rendering it.
-        timeout = mode.timeout * (4 if shapes > 100_000 else 1)
-        yield Job("growth", scene, shapes, methods, timeout=timeout)
+        timeout, repeat = (mode.timeout * 4, 2) if many else (mode.timeout, None)
+        yield Job("growth", scene, shapes, methods, timeout=timeout, repeat=repeat)
+        if shapes <= mode.flat_limit:
+            methods = ("auto", "brute")
+            yield Job("brute", scene, shapes, methods, timeout=mode.timeout, size=mode.small)
 
 
 def _sweeps(mode: Mode) -> Iterator[Job]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import math
-from dataclasses import asdict, dataclass, field
+from dataclasses import asdict, dataclass, field, replace
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
@@ -89,6 +89,7 @@ class Results:
     octray: str
     machine: dict[str, Any]
     size: list[int]
+    small: list[int]
     repeat: int
     budget_s: float
     seconds: float = 0.0
@@ -102,6 +103,27 @@ class Results:
         for measured in self.measured:
             if measured.experiment == experiment and scene in (None, measured.scene):
                 yield measured
+
+    def add(self, measured: Measured) -> None:
+        """Add a run. Brute force's rows join the growth curve of their scene.
+
+        Its pictures are smaller, so of times only those relative to ``auto`` and those of a ray
+        can be compared.
+        """
+        if measured.experiment == "brute":
+            for index, run in enumerate(self.measured):
+                same = (run.scene, run.asked) == (measured.scene, measured.asked)
+                if run.experiment == "growth" and same:
+                    # Without the yardstick its time cannot be compared.
+                    brute = [
+                        row
+                        for row in measured.rows
+                        if row.method == "brute" and (row.relative is not None or not row.done)
+                    ]
+                    self.measured[index] = replace(run, rows=[*brute, *run.rows])
+                    return
+            raise ValueError("brute force comes after the other methods of its scene")
+        self.measured.append(measured)
 
     def scene(self, name: str) -> Scene:
         """The scene of this name."""

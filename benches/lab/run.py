@@ -1,7 +1,8 @@
 """The lab: every method on every scene, growth curves, and a page of conclusions from them.
 
 ``python benches/lab/run.py`` makes everything in ``docs/lab`` anew; ``--mode quick`` takes a
-minute, ``--page`` makes the page and the figures again from the results that are there.
+minute and writes to ``out/lab``; ``--page`` makes the page and the figures again from the results
+that are there.
 """
 
 from __future__ import annotations
@@ -15,6 +16,7 @@ from pathlib import Path
 
 import octray
 import results
+from comparison import MissingError
 from measure import measure
 from plan import MODES, Job, Mode, jobs
 from results import Results, Scene
@@ -28,16 +30,17 @@ PICTURE = (240, 180)
 
 
 def main(arguments: list[str] | None = None) -> int:
-    """Run the lab; 0 if everything was measured or is listed as missing."""
+    """Run the lab; 0 if the page could be made of what was measured."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--mode", choices=MODES, default="full")
-    parser.add_argument("--output", type=Path, default=ROOT / "docs" / "lab", metavar="DIR")
+    parser.add_argument("--output", type=Path, metavar="DIR", help="where everything is written")
     parser.add_argument("--budget", type=float, metavar="S", help="seconds for everything")
     parser.add_argument(
         "--page", action="store_true", help="measure nothing: make the page from results.json"
     )
     options = parser.parse_args(arguments)
-    output: Path = options.output
+    usual = ROOT / "docs" / "lab" if options.mode == "full" else ROOT / "out" / "lab"
+    output: Path = options.output or usual
     output.mkdir(parents=True, exist_ok=True)
     if not options.page:
         mode = MODES[options.mode]
@@ -49,7 +52,12 @@ def main(arguments: list[str] | None = None) -> int:
     import page
 
     figures.draw(found, output)
-    (output / "README.md").write_text(page.fill(found), encoding="utf-8")
+    try:
+        text = page.fill(found)
+    except MissingError as error:
+        print(f"no page: {error}", file=sys.stderr)
+        return 1
+    (output / "README.md").write_text(text, encoding="utf-8")
     print(f"wrote {output / 'README.md'}", file=sys.stderr)
     return 0
 
@@ -62,6 +70,7 @@ def run(mode: Mode, output: Path, budget: float) -> Results:
         octray=octray.__version__,
         machine=_machine(),
         size=list(mode.size),
+        small=list(mode.small),
         repeat=mode.repeat,
         budget_s=budget,
     )
@@ -78,7 +87,7 @@ def run(mode: Mode, output: Path, budget: float) -> Results:
                 found.skipped.append(_name(job))
                 continue
             print(f"{time.monotonic() - start:6.0f} s  {_name(job)}", file=sys.stderr, flush=True)
-            found.measured.append(measure(job, path, shapes, mode, left))
+            found.add(measure(job, path, shapes, mode, left))
     found.seconds = time.monotonic() - start
     return found
 
