@@ -18,6 +18,10 @@ if TYPE_CHECKING:
 NOISE = 0.05
 
 
+#: What a table shows where nothing was measured.
+ABSENT = "-"
+
+
 class MissingError(Exception):
     """A number that is wanted is not in the results."""
 
@@ -134,7 +138,11 @@ class Ratios:
 
 
 def over_scenes(
-    runs: Iterable[Measured], quantity: Quantity, method: str, base: str, title: Callable[[str], str]
+    runs: Iterable[Measured],
+    quantity: Quantity,
+    method: str,
+    base: str,
+    title: Callable[[str], str],
 ) -> Ratios | None:
     """The ratio on every scene that has one; ``None`` if there are none."""
     found = {}
@@ -182,3 +190,8 @@ def in_bytes(value: float) -> str:
             return f"{short(value)} {unit}"
         value /= 1024
     return f"{short(value)} GiB"
+
+
+def written(value: float | None, text: Callable[[float], str] = short) -> str:
+    """A number as a table shows it."""
+    return ABSENT if value is None else text(value)

@@ -166,7 +166,7 @@ def _points(runs: Iterator[Measured], method: str, of: c.Quantity) -> list[tuple
 
 def _reduction(results: Results) -> dict[str, str]:
     """How the cost of a ray grows with the operands of one solid."""
-    found = {}
+    found: dict[str, str] = {}
     for name, method in {
         "faces": ORDERED,
         "by_box": BY_BOX,
@@ -206,8 +206,9 @@ def _decades(least: float, most: float) -> float:
 
 def _sweep(results: Results) -> dict[str, str]:
     """How far memory and time range while the criteria change."""
-    found, more, of = {}, 0, 0
-    spreads: dict[str, list[float]] = {"bytes": [], "time": [], "cells": []}
+    found: dict[str, str] = {}
+    more, of = 0, 0
+    spreads: dict[str, list[float]] = {"bytes": [], "time": []}
     for scene in dict.fromkeys(run.scene for run in results.of("criteria")):
         runs = list(results.of("criteria", scene))
         sizes = [row.bytes for run in runs if (row := run.row(ORDERED)) and row.bytes]
@@ -232,7 +233,10 @@ def _sweep(results: Results) -> dict[str, str]:
 
 def _tables(results: Results) -> dict[str, str]:
     """A table with as many rows as a power of two, against a prime number of rows."""
-    chains, looked, time, used = {}, {}, {}, {}
+    chains: dict[str, float] = {}
+    looked: dict[str, float] = {}
+    time: dict[str, float] = {}
+    used: dict[str, float] = {}
     for scene in dict.fromkeys(run.scene for run in results.of("table")):
         runs = {run.label: run for run in results.of("table", scene)}
         if {"prime", "power of two"} - runs.keys():

@@ -4,14 +4,16 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-import comparison as c
 import matplotlib as mpl
 from matplotlib.figure import Figure
+
+import comparison as c
 
 if TYPE_CHECKING:
     from pathlib import Path
 
     from matplotlib.axes import Axes
+
     from results import Results
 
 PANELS = (

@@ -71,6 +71,8 @@ class Mode:
     compared: tuple[str, ...]
     growing: tuple[str, ...]
     swept: tuple[str, ...]
+    #: Which settings of the criteria: all, or every how manyth.
+    every: int
     #: Seconds for everything.
     budget: float
     timeout: float
@@ -81,7 +83,7 @@ MODES = {
     for mode in (
         Mode(
             name="full",
-            size=(160, 120),
+            size=(128, 96),
             repeat=3,
             small=(24, 18),
             middle=10_000,
@@ -90,6 +92,7 @@ MODES = {
             compared=(*FAMILIES, "scan"),
             growing=("balls", "mount", "drilled", "stadium"),
             swept=("balls", "drilled", "rings", "tetra"),
+            every=1,
             budget=1150,
             timeout=20,
         ),
@@ -104,6 +107,7 @@ MODES = {
             compared=(*FAMILIES, "scan"),
             growing=("balls", "drilled"),
             swept=("balls",),
+            every=2,
             budget=90,
             timeout=2,
         ),
@@ -115,9 +119,10 @@ MODES = {
             middle=100,
             growth=(10, 100),
             flat_limit=100,
-            compared=("balls", "stadium"),
-            growing=("balls", "drilled"),
+            compared=("balls",),
+            growing=("drilled",),
             swept=("balls",),
+            every=5,
             budget=60,
             timeout=10,
         ),
@@ -130,14 +135,15 @@ TABLES: tuple[tuple[str, dict[str, Any]], ...] = (
     ("power of two", {"lvsi_table": "power-of-two"}),
 )
 
-#: One criterion changed at a time; the label names it.
-CRITERIA: tuple[tuple[str, str, dict[str, Any]], ...] = (
-    ("default", "default", {}),
-    *(("depth", f"depth <= {n}", {"tree_depth": n}) for n in (3, 5, 7, 9, 12)),
-    *(("objects", f"objects <= {n}", {"cell_objects": n}) for n in (1, 4, 16, 64)),
-    *(("share", f"share >= {x}", {"cell_share": x}) for x in (0.1, 0.5, 0.9)),
-    *(("cost", word, {"cell_cost": on}) for word, on in (("cost: no", False),)),
-    *(("memory", f"memory {n} MiB", {"tree_memory": n << 20}) for n in (1, 4)),
+#: One criterion changed at a time; the label says which cells are divided.
+CRITERIA: tuple[tuple[str, dict[str, Any]], ...] = (
+    ("default", {}),
+    *((f"depth <= {n}", {"tree_depth": n}) for n in (3, 5, 7, 9, 12)),
+    *((f"objects > {n}", {"tree_objects": n}) for n in (1, 4, 16, 64)),
+    *((f"share <= {x}", {"tree_share": x}) for x in (0.1, 0.5, 0.9)),
+    *((f"cost of a cell {n}", {"tree_cost": n}) for n in (1, 16)),
+    ("no cost", {"tree_cost": "off"}),
+    *((f"memory {n} MiB", {"tree_memory": n << 20}) for n in (1, 4)),
 )
 
 
@@ -157,7 +163,7 @@ def jobs(mode: Mode) -> Iterator[Job]:
 def _growth(mode: Mode, shapes: int) -> Iterator[Job]:
     for scene in mode.growing:
         many = shapes > 100_000
-        methods = GROWN if many else GROWING
+        methods: tuple[str, ...] = GROWN if many else GROWING
         if scene == "mount" and many:
             methods = ("auto", *methods)  # it has a structure of its own for triangles
         if shapes <= mode.flat_limit:
@@ -175,9 +181,9 @@ def _growth(mode: Mode, shapes: int) -> Iterator[Job]:
 def _sweeps(mode: Mode) -> Iterator[Job]:
     for scene in mode.swept:
         for label, tree in TABLES:
-            methods = (CONTROL, LVSI, LVSI_EMPTY)
-            yield Job("table", scene, mode.middle, methods, tree, label, mode.timeout)
+            hashed = (CONTROL, LVSI, LVSI_EMPTY)
+            yield Job("table", scene, mode.middle, hashed, tree, label, mode.timeout)
     for scene in mode.swept:
-        for _, label, tree in CRITERIA:
-            methods = (CONTROL, ORDERED)
-            yield Job("criteria", scene, mode.middle, methods, tree, label, mode.timeout)
+        for label, tree in CRITERIA[:: mode.every]:
+            divided = (CONTROL, ORDERED)
+            yield Job("criteria", scene, mode.middle, divided, tree, label, mode.timeout)

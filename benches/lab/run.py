@@ -18,12 +18,11 @@ import octray
 import results
 from comparison import MissingError
 from measure import measure
+from octray.lab import machine
 from plan import MODES, Job, Mode, jobs
 from results import Results, Scene
 from scenes import scan
 from scenes.families import FAMILIES, generate
-
-from octray.lab import machine
 
 ROOT = Path(__file__).resolve().parents[2]
 PICTURE = (240, 180)

@@ -14,8 +14,6 @@ if TYPE_CHECKING:
 
     Show = Callable[[Measured, Row], str | None]
 
-ABSENT = "-"
-
 
 def markdown(head: Sequence[str], rows: Sequence[Sequence[str]], left: int = 1) -> str:
     """A table whose first columns are text and whose others are numbers."""
@@ -30,7 +28,7 @@ def scenes(results: Results) -> str:
     rows = []
     for scene in results.scenes:
         if scene.shapes is None:
-            rows.append([scene.title, f"{scene.what}; {scene.absent}", ABSENT, ""])
+            rows.append([scene.title, f"{scene.what}; {scene.absent}", c.ABSENT, ""])
             continue
         picture = f'<img src="{scene.name}.png" alt="{scene.title}" width="160">'
         rows.append([scene.title, scene.what, f"{scene.shapes:,}", picture])
@@ -49,7 +47,7 @@ def _by_scene(results: Results, show: Show) -> str:
         for run in runs:
             row = run.row(name)
             value = None if row is None else show(run, row)
-            cells.append(ABSENT if value is None else value)
+            cells.append(value or c.ABSENT)
         rows.append([f"`{name}`", *cells])
     return markdown(["method", *(run.scene for run in runs)], rows)
 
@@ -91,7 +89,7 @@ def growth(results: Results, scene: str, of: c.Quantity, text: Callable[[float],
     for name in names:
         values = [run.row(name) for run in runs]
         numbers = [None if row is None else of(row) for row in values]
-        rows.append([f"`{name}`", *(ABSENT if n is None else text(n) for n in numbers)])
+        rows.append([f"`{name}`", *(c.written(number, text) for number in numbers)])
     return markdown(["method", *(f"{run.shapes:,}" for run in runs)], rows)
 
 
@@ -102,22 +100,21 @@ def table_sizes(results: Results) -> str:
         for method in (LVSI, LVSI_EMPTY):
             row = run.row(method)
             if row is None:
-                rows.append([run.scene, run.label, f"`{method}`", *[ABSENT] * 5])
+                rows.append([run.scene, run.label, f"`{method}`", *[c.ABSENT] * 5])
                 continue
             table = row.table or {}
             time = c.ratio(run, c.seconds, method, CONTROL)
-            looked = c.lookups(row)
             rows.append(
                 [
                     run.scene,
                     run.label,
                     f"`{method}`",
                     *(
-                        f"{table[key]:,}" if key in table else ABSENT
+                        f"{table[key]:,}" if key in table else c.ABSENT
                         for key in ("table_size", "heads_used", "longest_chain")
                     ),
-                    ABSENT if looked is None else c.short(looked),
-                    ABSENT if time is None else c.times(time),
+                    c.written(c.lookups(row)),
+                    c.written(time, c.times),
                 ]
             )
     head = ["scene", "table size", "method", "rows", "used", "longest chain", "look-ups per ray"]
@@ -130,13 +127,16 @@ def criteria(results: Results) -> str:
     for run in results.of("criteria"):
         row = run.row(ORDERED)
         time = c.ratio(run, c.seconds, ORDERED, CONTROL)
-        values = [None] * 4 if row is None else [row.bytes, row.depth, c.steps(row), c.tests(row)]
-        texts = [c.in_bytes, str, c.short, c.short]
+        if row is None:
+            rows.append([run.scene, run.label, *[c.ABSENT] * 5])
+            continue
         cells = [
-            ABSENT if value is None else text(value)
-            for value, text in zip(values, texts, strict=True)
+            c.written(c.memory(row), c.in_bytes),
+            c.written(c.depth(row), lambda level: f"{level:.0f}"),
+            c.written(c.steps(row)),
+            c.written(c.tests(row)),
+            c.written(time, c.times),
         ]
-        cells.append(ABSENT if time is None else c.times(time))
         rows.append([run.scene, run.label, *cells])
     head = ["scene", "criterion", "memory", "depth", "cells per ray", "tests per ray"]
     return markdown([*head, f"time / {CONTROL}"], rows, left=2)

@@ -35,9 +35,7 @@ def write(level: int, file: TextIO) -> None:
     corner = pov.vector(HALF, HALF, THICK)
     file.write(f"difference {{\n  box {{ -{corner}, {corner} }}\n")
     reach = 2 * THICK
-    pattern = (
-        f"  cylinder {{ <%.9g, %.9g, {-reach:.9g}>, <%.9g, %.9g, {reach:.9g}>, %.9g }}\n"
-    )
+    pattern = f"  cylinder {{ <%.9g, %.9g, {-reach:.9g}>, <%.9g, %.9g, {reach:.9g}>, %.9g }}\n"
     x, y, radius = holes(SIDES[level]).T
     rows(file, pattern, np.column_stack([x, y, x, y, radius]))
     file.write(f"  {pov.material((0.55, 0.62, 0.72), mirror=0.15)}\n}}\n")

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, TextIO
 
-from scenes.nff import Vector
-
 if TYPE_CHECKING:
     from collections.abc import Sequence
+
+    from scenes.nff import Vector
 
 
 def vector(*values: float) -> str:
@@ -26,9 +26,7 @@ def view(file: TextIO, eye: Vector, target: Vector, *, angle: float) -> None:
 def lights(file: TextIO, places: Sequence[Vector]) -> None:
     """Point lights that share one strength."""
     strength = 1.15 / len(places)
-    file.writelines(
-        f"light_source {{ {vector(*place)} rgb {strength:.9g} }}\n" for place in places
-    )
+    file.writelines(f"light_source {{ {vector(*place)} rgb {strength:.9g} }}\n" for place in places)
 
 
 def material(color: Vector, *, mirror: float = 0.0, glass: float = 0.0) -> str:

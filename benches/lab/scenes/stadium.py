@@ -92,6 +92,7 @@ def _lathe(pieces: Floats) -> str:
 def _teapot(file: TextIO) -> None:
     """One union: body, lid and knob, a spout of two cones and a lip, a handle of half a torus."""
     foot, knee, lip = (0.50, 0.0, 0.26), (0.86, 0.0, 0.50), (1.02, 0.0, 0.76)
+    ring = "torus { 0.26, 0.05 translate <-0.53, 0, 0.45> }"
     parts = [
         _lathe(BODY),
         _lathe(LID),
@@ -100,8 +101,7 @@ def _teapot(file: TextIO) -> None:
         f"sphere {{ {pov.vector(*knee)}, 0.087 }}",
         f"cone {{ {pov.vector(*knee)}, 0.085, {pov.vector(*lip)}, 0.055 }}",
         # The half of the ring that is outside; a ring lies about y.
-        "intersection { torus { 0.26, 0.05 translate <-0.53, 0, 0.45> }"
-        " box { <-1, -0.2, 0>, <-0.53, 0.2, 1> } }",
+        f"intersection {{ {ring} box {{ <-1, -0.2, 0>, <-0.53, 0.2, 1> }} }}",
         f"torus {{ 0.43, 0.03 rotate x * 90 translate z * {0.03:.9g} }}",
     ]
     paint = pov.material((0.85, 0.9, 0.95), mirror=0.2)
