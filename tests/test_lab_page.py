@@ -60,6 +60,7 @@ def row(method: str, **known: object) -> Row:
         "render_s": 1.0,
         "relative": 1.0,
         "bytes": 1000,
+        "node_bytes": 500,
         "rays": {"primary": 10, "total": 10},
         "per_ray": {"surfaces": 2.0, "triangles": 1.0, "cells": 5.0, "nodes": 1.0},
     }

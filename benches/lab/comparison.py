@@ -51,6 +51,11 @@ def memory(row: Row) -> float | None:
     return row.bytes
 
 
+def nodes(row: Row) -> float | None:
+    """Bytes of the cells alone."""
+    return row.node_bytes
+
+
 def depth(row: Row) -> float | None:
     """The deepest level with leaves."""
     return row.depth

@@ -40,6 +40,7 @@ QUANTITIES = {
     "time": c.seconds,
     "build": c.built,
     "bytes": c.memory,
+    "nodes": c.nodes,
     "steps": c.steps,
     "tests": c.tests,
 }
@@ -125,6 +126,7 @@ def _claims(results: Results) -> dict[str, str]:
     found = {}
     for name, quantity, (method, base), side in (
         ("saves", c.memory, PAIRS["hash_tree"], "below"),
+        ("saves_nodes", c.nodes, PAIRS["hash_tree"], "below"),
         ("slower", c.seconds, PAIRS["hash_tree"], "above"),
         ("slower_empty", c.seconds, PAIRS["hash_empty_tree"], "above"),
         ("accurate", c.tests, PAIRS["shells_box"], "below"),

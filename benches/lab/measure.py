@@ -27,19 +27,23 @@ def measure(job: Job, path: Path, shapes: int, mode: Mode, budget: float) -> Mea
         memory=MEMORY_BYTES,
         timeout=job.timeout,
         budget=budget,
-    ).to_dict()
-    if report["interrupted"]:
+    )
+    if report.interrupted:
         raise KeyboardInterrupt
-    rows = [row_of(combination) for combination in report["combinations"]]
+    rows = [
+        row_of(combination.to_dict(), (combination.report or {}).get("trees", {}))
+        for combination in report.combinations
+    ]
     return Measured(
-        job.experiment, job.scene, job.shapes, shapes, job.label, rows, report["reference"]
+        job.experiment, job.scene, job.shapes, shapes, job.label, rows, report.reference
     )
 
 
-def row_of(found: dict[str, Any]) -> Row:
-    """Take one method out of the lab's JSON object."""
-    depths = found["depth_histogram"]
-    leaves = found["objects_per_leaf"]
+def row_of(found: dict[str, Any], trees: dict[str, Any]) -> Row:
+    """Take one method out of the lab's JSON object and what was told of its structures."""
+    kept = [tree for tree in trees.values() if tree is not None]
+    # Over solids; those over triangles are told of where there are no others.
+    cells = next((tree for tree in kept if "node_bytes" in tree), {})
     return Row(
         method=found["method"],
         status=found["status"],
@@ -48,23 +52,17 @@ def row_of(found: dict[str, Any]) -> Row:
         render_s=found["render"]["median_s"],
         relative=found["render"]["relative"],
         bytes=found["memory"]["structure_bytes"],
-        parts=found["memory"]["parts"],
+        node_bytes=cells.get("node_bytes"),
         nodes=found["nodes"],
-        depth=None if not depths else max(i for i, n in enumerate(depths) if n),
-        objects_per_leaf=None if not leaves else _mean(leaves[1:], first=1),
+        depth=cells.get("depth"),
+        objects_per_leaf=(cells.get("objects_per_leaf") or {}).get("mean"),
         marks=found["marks"],
-        triangle_cube_steps=found["triangle_cube_steps"],
-        table=found.get("table"),
+        table=cells.get("lvsi"),
         rays=found["rays"],
         per_ray=found["per_ray"],
         per_ray_by_kind=_without_zeros(found["per_ray_by_kind"]),
         same=found["picture"]["same"],
     )
-
-
-def _mean(counts: list[int], first: int) -> float | None:
-    total = sum(counts)
-    return sum(i * n for i, n in enumerate(counts, first)) / total if total else None
 
 
 def _without_zeros(by_kind: dict[str, dict[str, float]] | None) -> dict[str, dict[str, float]]:

@@ -27,17 +27,17 @@ class Row:
     render_s: float | None = None
     #: Time of the picture as a multiple of that of ``auto`` beside it.
     relative: float | None = None
-    #: Bytes of all structures, and by part.
+    #: Bytes of all structures, and of the cells alone without what is in them.
     bytes: int | None = None
-    parts: dict[str, int] | None = None
+    node_bytes: int | None = None
     nodes: dict[str, int] | None = None
-    #: The deepest level that has leaves.
+    #: The deepest level that has leaves, in the octree over solids.
     depth: int | None = None
     #: Objects in a leaf that has any, on average.
     objects_per_leaf: float | None = None
     marks: dict[str, int] | None = None
-    triangle_cube_steps: dict[str, int] | None = None
-    table: dict[str, int] | None = None
+    #: The hash table: its size, rows in use, the longest chain of collisions.
+    table: dict[str, float] | None = None
     rays: dict[str, int] | None = None
     per_ray: dict[str, float] | None = None
     per_ray_by_kind: dict[str, dict[str, float]] | None = None

@@ -110,7 +110,7 @@ def table_sizes(results: Results) -> str:
                     run.label,
                     f"`{method}`",
                     *(
-                        f"{table[key]:,}" if key in table else c.ABSENT
+                        f"{table[key]:,.0f}" if key in table else c.ABSENT
                         for key in ("table_size", "heads_used", "longest_chain")
                     ),
                     c.written(c.lookups(row)),
