@@ -7,6 +7,7 @@
 mod batch;
 mod chords;
 mod faces;
+mod figures;
 mod interact;
 mod line;
 mod method;
@@ -19,6 +20,7 @@ mod world;
 
 pub use batch::{Batch, BatchError, Lists, RayRow, row_query};
 pub use chords::{Chord, ChordEnd, Overlaps};
+pub use figures::{CellsOf, MemoryStats, WorldCell};
 pub use method::{Method, MethodError};
 pub use query::{Counters, Departure, Hit, RayQuery, Region, SurfaceHit};
 pub use surfaces::{NearCoincidence, SurfaceReport};
@@ -26,6 +28,6 @@ pub use world::{World, WorldConfig, WorldError, WorldStats};
 
 pub use octray_geometry::Membership;
 pub use octray_tree::{
-    CellTreeStats, Criteria, Division, Encoding, LvsiStore, PartitionStats, Traversal,
-    WideTreeConfig, WideTreeError, WideTreeStats,
+    CellTreeStats, Criteria, Division, Encoding, LvsiStats, LvsiStore, LvsiTable, PartitionStats,
+    TableSize, Tally, Traversal, WideTreeConfig, WideTreeError, WideTreeStats,
 };

@@ -7,13 +7,15 @@ use octray_geometry::FaceId;
 use octray_geometry::mesh::MeshError;
 use octray_math::Aabb;
 use octray_scene::{Scene, Shape};
-use octray_tree::{Criteria, PartitionStats, WideTreeConfig, WideTreeError, WideTreeStats};
+use octray_tree::{
+    Criteria, LvsiTable, PartitionStats, Tally, WideTreeConfig, WideTreeError, WideTreeStats,
+};
 use thiserror::Error;
 
 use crate::line::{Line, Place};
 use crate::sheets::{SheetHit, Sheets};
 use crate::solids::{Interface, Scratch, Solids};
-use crate::{Counters, Hit, Method, RayQuery, Region};
+use crate::{Counters, Hit, MemoryStats, Method, RayQuery, Region};
 
 /// How to prepare a world.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -22,6 +24,8 @@ pub struct WorldConfig {
     pub method: Method,
     /// When to divide cells.
     pub criteria: Criteria,
+    /// How large a hash table of cells is.
+    pub table: LvsiTable,
     /// How to build the octrees over triangles.
     pub triangles: WideTreeConfig,
 }
@@ -72,6 +76,10 @@ pub struct WorldStats {
     pub triangles: usize,
     /// The cells over the solids.
     pub cells: Option<PartitionStats>,
+    /// How many objects the occupied cells over solids hold.
+    pub objects_per_leaf: Tally,
+    /// Memory by part.
+    pub memory: MemoryStats,
     /// The octree over the triangles of sheets.
     pub triangle_tree: Option<WideTreeStats>,
 }
@@ -149,7 +157,9 @@ impl World {
             merged_surfaces: self.solids.merged_surfaces(),
             faces: self.solids.face_count() as usize + self.sheets.triangle_count(),
             triangles: self.sheets.triangle_count(),
-            cells: self.solids.partition_stats().cloned(),
+            cells: self.solids.partition().map(|cells| cells.stats().clone()),
+            objects_per_leaf: self.objects_per_leaf(),
+            memory: self.memory(),
             triangle_tree: self.sheets.triangles().tree_stats().copied(),
         }
     }

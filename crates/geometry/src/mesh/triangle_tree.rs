@@ -82,6 +82,12 @@ impl TriangleTree {
         Aabb::from_points(self.corners(triangle))
     }
 
+    /// Bytes of the triangles and their corners.
+    #[must_use]
+    pub fn bytes(&self) -> u64 {
+        (size_of_val(self.positions.as_slice()) + size_of_val(self.triangles.as_slice())) as u64
+    }
+
     /// Figures about the octree.
     #[must_use]
     pub fn tree_stats(&self) -> Option<&WideTreeStats> {

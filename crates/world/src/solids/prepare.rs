@@ -166,8 +166,14 @@ impl Solids {
             if matches!(division, Division::Octree(Encoding::Lvsi(_), _)) {
                 whole = Some(outer.clone());
             }
-            let (built, leaves) =
-                Partition::build(&bounds, outer, &restricting, division, &config.criteria);
+            let (built, leaves) = Partition::build(
+                &bounds,
+                outer,
+                &restricting,
+                division,
+                &config.criteria,
+                config.table,
+            );
             contents = leaves;
             cells = Some(built);
             outer = unbounded;
