@@ -13,6 +13,7 @@ mod line;
 mod method;
 mod query;
 mod sheets;
+mod slice;
 mod solids;
 mod start;
 mod surfaces;

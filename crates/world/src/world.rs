@@ -171,21 +171,6 @@ impl World {
             .chain(self.sheets.triangles().tree_words())
     }
 
-    /// The nearest surface on each ray; `hits` is cleared and gets one hit per query.
-    ///
-    /// A ray that is not finite or has no direction meets nothing.
-    pub fn closest(&self, queries: &[RayQuery], hits: &mut Vec<Hit>, counters: &mut Counters) {
-        hits.clear();
-        counters.rays += queries.len() as u64;
-        self.scratch.with(|scratch| {
-            hits.extend(
-                queries
-                    .iter()
-                    .map(|query| self.closest_one(query, scratch, counters)),
-            );
-        });
-    }
-
     pub(crate) fn closest_one(
         &self,
         query: &RayQuery,
@@ -251,21 +236,6 @@ impl World {
         best
     }
 
-    /// Whether a surface that no light passes, of an object that casts shadows, lies on each ray;
-    /// `blocked` is cleared and gets one answer per query.
-    pub fn occluded(&self, queries: &[RayQuery], blocked: &mut Vec<bool>, counters: &mut Counters) {
-        blocked.clear();
-        counters.rays += queries.len() as u64;
-        self.scratch.with(|scratch| {
-            let stops = |face| self.blocks(face);
-            blocked.extend(
-                queries
-                    .iter()
-                    .map(|query| self.meets_any(query, &stops, scratch, counters)),
-            );
-        });
-    }
-
     /// Whether any of the faces that count lies on the ray.
     pub(crate) fn meets_any(
         &self,
@@ -304,7 +274,7 @@ impl World {
     }
 
     /// Whether a face stops light.
-    fn blocks(&self, face: FaceId) -> bool {
+    pub(crate) fn blocks(&self, face: FaceId) -> bool {
         self.owner(face).is_some_and(|(object, material)| {
             self.opaque[material.0 as usize]
                 && self.scene.objects()[object.0 as usize].casts_shadows

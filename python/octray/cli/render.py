@@ -38,6 +38,16 @@ if TYPE_CHECKING:
 @tree_options
 @threads_option
 @click.option(
+    "--integrator",
+    type=click.Choice(["whitted", "cost"]),
+    default="whitted",
+    show_default=True,
+    help=(
+        "What a pixel shows: light (Whitted's recursive ray tracing), or what the same rays cost: "
+        "in a PNG a heat map, in an EXR steps, surfaces and triangles tested per sample."
+    ),
+)
+@click.option(
     "--view",
     type=click.Choice(["neutral", "standard", "raw"]),
     help="How light becomes colours in a PNG; by default what suits the file.",
@@ -103,7 +113,10 @@ class _Run:
             check_request(
                 **{
                     name: self.options[name]
-                    for name in ("size", "spp", "threads", "crop", "max_depth", "threshold")
+                    for name in (
+                        *("size", "spp", "threads", "crop", "max_depth", "threshold"),
+                        *("view", "integrator"),
+                    )
                 }
             )
         except ValueError as error:
@@ -127,6 +140,8 @@ class _Run:
         self.report.add_output(output, image)
         if not options["quiet"]:
             self._say(self._summary(output, image))
+            if image.report["cost"] is not None:
+                self._say(f"  {self._scale(image)}")
         if options["verbose"]:
             self._say(self.report.details())
         return Exit.OK
@@ -155,7 +170,10 @@ class _Run:
                 return scene.render(
                     **{
                         name: options[name]
-                        for name in ("size", "spp", "threads", "accel", "crop", "view")
+                        for name in (
+                            *("size", "spp", "threads", "accel", "crop", "view"),
+                            "integrator",
+                        )
                     },
                     max_depth=options["max_depth"],
                     threshold=options["threshold"],
@@ -196,6 +214,16 @@ class _Run:
             f"{output.name}: {image.width}x{image.height} in {duration(sum(phases.values()))}"
             f" (import {duration(phases['import_s'])}, build {duration(phases['build_s'])},"
             f" render {duration(phases['render_s'])}), {rate / scale:.3g} {unit}rays/s"
+        )
+
+    @staticmethod
+    def _scale(image: Image) -> str:
+        cost = image.report["cost"]
+        weights = cost["weights"]
+        return (
+            f"colours of a PNG: black is {cost['low']:g}, the brightest {cost['high']:.3g} or more"
+            " (99.5 % of the pixels are below), in tests of one surface per sample; a step weighs"
+            f" {weights['step']:g}, a triangle {weights['triangle']:g}"
         )
 
 

@@ -20,9 +20,10 @@ class Figures:
     nodes: dict[str, int] | None = None
     #: Why the builder did not divide further.
     stopped: dict[str, Any] | None = None
-    #: Cells by depth, leaves by how many objects they have; the place in the list is the number.
-    depths: list[int] | None = None
-    per_leaf: list[int] | None = None
+    #: Pairs of a depth and how many leaves have it, of a number of objects and how many leaves
+    #: hold so many.
+    depths: list[list[int]] | None = None
+    per_leaf: list[list[int]] | None = None
     #: How often cells were marked, and how each step of the triangle-cube test decided.
     marks: dict[str, int] | None = None
     triangle_cube_steps: dict[str, int] | None = None

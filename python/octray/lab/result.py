@@ -125,9 +125,9 @@ class Group:
 class Drawings:
     """What there is to draw; arrays are kept only where pictures were asked for."""
 
-    #: Linear light of the reference picture, (height, width, 3).
-    picture: npt.NDArray[np.float32] | None = None
-    #: Cost of every pixel by method, (height, width, 3).
+    #: The reference picture, a PNG.
+    picture: bytes | None = None
+    #: Cost of every pixel by method, (height, width, 3): steps, surfaces and triangles tested.
     cost: dict[str, npt.NDArray[np.float32]] = field(default_factory=dict)
     #: Cells by method: ``bounds`` (n, 2, 3), ``depth`` (n), ``kind`` (n).
     cells: dict[str, dict[str, npt.NDArray[Any]]] = field(default_factory=dict)

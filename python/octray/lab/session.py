@@ -99,19 +99,20 @@ class Session:
         for turn in range(self.plan.repeat):
             for member in self.members:
                 if member.alive:
-                    self._repeat(member, build_again=turn > 0)
-        if self.plan.drawings:
-            for member in self.members:
-                if member.alive and not member.extra:
-                    self._collect(member)
+                    self.repeat(member, build_again=turn > 0)
+            if self.plan.drawings and turn == 0:
+                # Early, so that a run that is cut off has something to show of every method.
+                for member in self.members:
+                    if member.alive and not member.extra:
+                        self._collect(member)
         self._close_group()
 
     def _close_group(self) -> None:
         """End all workers; take the group's times together."""
-        for member in self.members:
-            member.close()
         if not self.members:
             return
+        for member in self.members:
+            member.close()
         group = self.report.groups[-1]
         group.methods = [m.combination.method for m in self.members if not m.extra]
         for member in self.members:
@@ -168,7 +169,7 @@ class Session:
                 memory=plan.memory,
             )
         for member in batch:
-            answer = self._receive(member, limited=False)
+            answer = self.receive(member, limited=False)
             if answer is not None:
                 member.combination.loaded_bytes = answer["resident_bytes"]
                 member.combination.resident_bytes = answer["resident_bytes"]
@@ -186,7 +187,7 @@ class Session:
 
     def _build(self, member: Member) -> bool:
         member.worker.send("build", threads=self.plan.threads, tree=self.plan.tree)
-        answer = self._receive(member)
+        answer = self.receive(member)
         if answer is None:
             return False
         combination = member.combination
@@ -196,15 +197,21 @@ class Session:
             combination.resident_bytes = answer["resident_bytes"]
         return True
 
-    def _repeat(self, member: Member, *, build_again: bool) -> None:
+    def repeat(self, member: Member, *, build_again: bool) -> None:
+        """Render once, after another build if that is quick."""
         combination = member.combination
         if build_again and combination.build_s[0] < _SHORT_BUILD_S:
             self.steps += 1
             member.steps += 1
             if not self._build(member):
                 return
-        member.worker.send("render", options=self.plan.render, folder=str(self.folder))
-        answer = self._receive(member)
+        member.worker.send(
+            "render",
+            options=self.plan.render,
+            folder=str(self.folder),
+            png=self.plan.drawings,
+        )
+        answer = self.receive(member)
         if answer is not None:
             combination.render_s.append(answer["render_s"])
             combination.pictures.append(answer["picture"])
@@ -225,7 +232,7 @@ class Session:
                 raise OutOfBudgetError from None
             raise
 
-    def _receive(self, member: Member, *, limited: bool = True) -> dict[str, Any] | None:
+    def receive(self, member: Member, *, limited: bool = True) -> dict[str, Any] | None:
         """Wait for an answer; ``None`` if there is none, which is then in the report."""
         try:
             answer = self._wait(member, limited=limited)
@@ -256,8 +263,7 @@ class Session:
                     drawings.cells[name] = dict(arrays)
         except WorkerError as error:
             self._note(f"{name} has no picture of its costs: {error}")
-            member.close()
-        self._advance(member, member.steps)
+        self._advance(member, 1)
 
     def _mark_unfinished(self, status: Status) -> None:
         """Say of every method that is not done why."""
@@ -267,6 +273,8 @@ class Session:
             if combination.status is not Status.DONE or done == wanted:
                 continue
             combination.status = status
+            if done and self.plan.drawings and combination.method not in self.report.drawings.cost:
+                self._note(f"no time was left for a picture of the costs of {combination.method}")
             if done:
                 combination.message = f"{done} of {wanted} repetitions were done"
             else:

@@ -94,14 +94,19 @@ class Worker:
         ask = getattr(self.scene, name, None)
         return None if ask is None else ask(accel=self.accel)
 
-    def do_render(self, options: dict[str, Any], folder: str) -> dict[str, Any]:
-        """Render; leave the picture in the folder under its hash, unless one is there."""
+    def do_render(self, options: dict[str, Any], folder: str, png: bool) -> dict[str, Any]:
+        """Render; leave the picture in the folder under its hash, unless one is there.
+
+        With ``png`` also leave it there as one looks at it.
+        """
         image = self.scene.render(accel=self.accel, **_tuples(options))
         pixels = image.to_numpy()
         name = picture_hash(pixels)
         path = Path(folder) / f"{name}.npy"
         if not path.exists():
             save(path, pixels)
+            if png:
+                image.save(path.with_suffix(".png"))
         return {
             "render_s": image.report["phases"]["render_s"],
             "picture": name,
@@ -154,7 +159,10 @@ def answer(worker: Worker, request: dict[str, Any]) -> dict[str, Any]:
     except MemoryError:
         return {"error": "memory", "message": "out of memory"}
     except Exception as error:  # noqa: BLE001 - whatever it is, the others go on
-        return {"error": "failed", "message": str(error) or type(error).__name__}
+        text = str(error) or type(error).__name__
+        # So ends a structure that the limit of memory leaves no room to stay coarser in.
+        refused = "bytes, more than the limit of" in text
+        return {"error": "memory" if refused else "failed", "message": text}
     return done
 
 
