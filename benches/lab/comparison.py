@@ -57,8 +57,13 @@ def nodes(row: Row) -> float | None:
 
 
 def depth(row: Row) -> float | None:
-    """The deepest level with leaves."""
-    return row.depth
+    """The level of an occupied cell, on average."""
+    return row.leaf_depth
+
+
+def walks(row: Row) -> bool:
+    """Whether the method's cells or volumes were visited at all; brute force has none."""
+    return row.method == "brute" or (row.per_ray or {}).get("cells") != 0
 
 
 def seconds(row: Row) -> float | None:
@@ -149,11 +154,13 @@ def over_scenes(
     base: str,
     title: Callable[[str], str],
 ) -> Ratios | None:
-    """The ratio on every scene that has one; ``None`` if there are none."""
+    """The ratio on every scene where both methods had something to do; ``None`` if on none."""
     found = {}
     for measured in runs:
+        rows = [measured.row(name) for name in (method, base)]
         value = ratio(measured, quantity, method, base)
-        if value is not None and value > 0:
+        # A scene of which a method leaves everything to another structure says nothing about it.
+        if value is not None and value > 0 and all(row and walks(row) for row in rows):
             found[title(measured.scene)] = value
     noise = NOISE if quantity in (seconds, built) else 0.0
     return Ratios(found, noise) if found else None

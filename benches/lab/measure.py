@@ -55,6 +55,7 @@ def row_of(found: dict[str, Any], trees: dict[str, Any]) -> Row:
         node_bytes=cells.get("node_bytes"),
         nodes=found["nodes"],
         depth=cells.get("depth"),
+        leaf_depth=_mean_level(cells.get("occupied_by_depth") or []),
         objects_per_leaf=(cells.get("objects_per_leaf") or {}).get("mean"),
         marks=found["marks"],
         table=cells.get("lvsi"),
@@ -63,6 +64,11 @@ def row_of(found: dict[str, Any], trees: dict[str, Any]) -> Row:
         per_ray_by_kind=_without_zeros(found["per_ray_by_kind"]),
         same=found["picture"]["same"],
     )
+
+
+def _mean_level(counts: list[int]) -> float | None:
+    total = sum(counts)
+    return sum(level * n for level, n in enumerate(counts)) / total if total else None
 
 
 def _without_zeros(by_kind: dict[str, dict[str, float]] | None) -> dict[str, dict[str, float]]:

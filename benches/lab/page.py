@@ -37,6 +37,7 @@ def _blocks(results: Results) -> dict[str, str]:
         "table.comparison.bytes": tables.quantity(results, c.memory, c.in_bytes),
         "table.comparison.steps": tables.quantity(results, c.steps),
         "table.comparison.tests": tables.quantity(results, c.tests),
+        "table.comparison.lookups": tables.quantity(results, c.lookups),
         "table.drilled.time": tables.growth(results, "drilled", c.per_ray_s, _microseconds),
         "table.drilled.tests": tables.growth(results, "drilled", c.tests, c.short),
         "table.sizes": tables.table_sizes(results),

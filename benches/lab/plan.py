@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
@@ -148,20 +149,30 @@ CRITERIA: tuple[tuple[str, dict[str, Any]], ...] = (
 
 
 def jobs(mode: Mode) -> Iterator[Job]:
-    """Everything in order of importance: what the budget cuts off comes last."""
-    for scene in mode.compared:
+    """Everything in order of importance: what the budget cuts off comes last.
+
+    A little of each experiment comes first, so that there is a page whatever is cut off.
+    """
+    yield from _comparison(mode, mode.compared[:1])
+    small, medium, large = (
+        [n for n in mode.growth if least < n <= most]
+        for least, most in ((0, 1_000), (1_000, 10_000), (10_000, 10**9))
+    )
+    yield from _growth(mode, small)
+    yield from _sweeps(mode, mode.swept[:1])
+    yield from _comparison(mode, mode.compared[1:])
+    yield from _growth(mode, medium)
+    yield from _sweeps(mode, mode.swept[1:])
+    yield from _growth(mode, large)
+
+
+def _comparison(mode: Mode, scenes: tuple[str, ...]) -> Iterator[Job]:
+    for scene in scenes:
         yield Job("comparison", scene, mode.middle, timeout=mode.timeout)
-    ordinary = [n for n in mode.growth if n <= 10_000]
-    for shapes in ordinary:
-        yield from _growth(mode, shapes)
-    yield from _sweeps(mode)
-    for shapes in mode.growth:
-        if shapes not in ordinary:
-            yield from _growth(mode, shapes)
 
 
-def _growth(mode: Mode, shapes: int) -> Iterator[Job]:
-    for scene in mode.growing:
+def _growth(mode: Mode, sizes: list[int]) -> Iterator[Job]:
+    for shapes, scene in itertools.product(sizes, mode.growing):
         many = shapes > 100_000
         methods: tuple[str, ...] = GROWN if many else GROWING
         if scene == "mount" and many:
@@ -178,12 +189,11 @@ def _growth(mode: Mode, shapes: int) -> Iterator[Job]:
             yield Job("brute", scene, shapes, methods, timeout=mode.timeout, size=mode.small)
 
 
-def _sweeps(mode: Mode) -> Iterator[Job]:
-    for scene in mode.swept:
+def _sweeps(mode: Mode, scenes: tuple[str, ...]) -> Iterator[Job]:
+    for scene in scenes:
         for label, tree in TABLES:
             hashed = (CONTROL, LVSI, LVSI_EMPTY)
             yield Job("table", scene, mode.middle, hashed, tree, label, mode.timeout)
-    for scene in mode.swept:
         for label, tree in CRITERIA[:: mode.every]:
             divided = (CONTROL, ORDERED)
             yield Job("criteria", scene, mode.middle, divided, tree, label, mode.timeout)

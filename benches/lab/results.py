@@ -33,6 +33,8 @@ class Row:
     nodes: dict[str, int] | None = None
     #: The deepest level that has leaves, in the octree over solids.
     depth: int | None = None
+    #: The level of its occupied cells, on average.
+    leaf_depth: float | None = None
     #: Objects in a leaf that has any, on average.
     objects_per_leaf: float | None = None
     marks: dict[str, int] | None = None

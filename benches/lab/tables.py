@@ -132,7 +132,7 @@ def criteria(results: Results) -> str:
             continue
         cells = [
             c.written(c.memory(row), c.in_bytes),
-            c.written(c.depth(row), lambda level: f"{level:.0f}"),
+            c.written(row.depth, lambda level: f"{level:.0f}"),
             c.written(c.steps(row)),
             c.written(c.tests(row)),
             c.written(time, c.times),
