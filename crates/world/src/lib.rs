@@ -28,6 +28,7 @@ pub use surfaces::{NearCoincidence, SurfaceReport};
 pub use world::{World, WorldConfig, WorldError, WorldStats};
 
 pub use octray_geometry::Membership;
+pub use octray_geometry::mesh::TriangleMarks;
 pub use octray_tree::{
     CellTreeStats, Criteria, Division, Encoding, LvsiStats, LvsiStore, LvsiTable, PartitionStats,
     TableSize, Tally, Traversal, WideTreeConfig, WideTreeError, WideTreeStats,

@@ -31,28 +31,46 @@ if TYPE_CHECKING:
 #: Boxes drawn over a picture at most: more of them hide what they show.
 MOST_BOXES = 2500
 _AXES = "xyz"
-#: What a cell that holds something is called.
-OCCUPIED = "occupied"
 
 
-def occupied(cells: Cells) -> npt.NDArray[np.bool_]:
-    """Say which cells hold something."""
-    full: npt.NDArray[np.bool_] = np.asarray(cells["kind"]) == OCCUPIED
-    return full
+def _root(cells: Cells) -> tuple[Floats, Floats]:
+    """Give the lowest corner and the sides of the box that these cells divide."""
+    low, high = cells["root"]
+    return low, high - low
 
 
-def coarsened(cells: Cells, most: int = MOST_BOXES) -> tuple[Floats, npt.NDArray[Any], int | None]:
-    """Give boxes of occupied leaves and their depths, not too many.
+def _places(points: Floats, low: Floats, root: Floats, depth: int) -> npt.NDArray[np.int64]:
+    """Give the number of the cell of a depth in which each point (n, 3) lies, -1 if outside."""
+    count = 1 << depth
+    at = np.floor((points - low) / root * count).astype(np.int64)
+    number: npt.NDArray[np.int64] = (at[:, 2] * count + at[:, 1]) * count + at[:, 0]
+    return np.where(((at >= 0) & (at < count)).all(axis=1), number, -1)
+
+
+def holding(cells: Cells, points: Floats) -> npt.NDArray[np.bool_]:
+    """Say which cells have one of these points (n, 3) in them."""
+    bounds, depth = cells["bounds"], cells["depth"]
+    low, root = _root(cells)
+    found = np.zeros(len(depth), dtype=bool)
+    for level in np.unique(depth):
+        here = depth == level
+        middles = bounds[here].mean(axis=1)
+        occupied_places = np.unique(_places(points, low, root, int(level)))
+        found[here] = np.isin(_places(middles, low, root, int(level)), occupied_places)
+    return found
+
+
+def coarsened(
+    cells: Cells, chosen: npt.NDArray[np.bool_], most: int = MOST_BOXES
+) -> tuple[Floats, npt.NDArray[Any], int | None]:
+    """Give the boxes of chosen cells and their depths, not too many.
 
     Where there are too many, those below some depth are replaced by their ancestors there; that
     depth is the third value, ``None`` if all are drawn as they are.
     """
-    everything, depths = np.asarray(cells["bounds"], dtype=np.float64), np.asarray(cells["depth"])
-    low = everything[:, 0].min(axis=0)
-    sides = everything[:, 1] - everything[:, 0]
-    root = (sides * 2.0 ** depths[:, None]).max(axis=0)
-    full = occupied(cells)
-    bounds, depth = everything[full], depths[full].astype(int)
+    low, root = _root(cells)
+    bounds = cells["bounds"][chosen]
+    depth = cells["depth"][chosen].astype(int)
     if len(bounds) <= most:
         return bounds, depth, None
     limit = int(depth.max())
@@ -85,11 +103,19 @@ def _legend(figure: Figure, axes: Any, colors: Colormap, norm: BoundaryNorm) -> 
     bar.outline.set_visible(False)
 
 
-def over_picture(picture: bytes, cells: Cells, projection: Projection) -> tuple[bytes, int | None]:
-    """Draw the occupied leaves over the picture; the depth to which they are drawn, if limited."""
+def over_picture(
+    picture: bytes, cells: Cells, projection: Projection, seen: Floats | None
+) -> tuple[bytes, int | None]:
+    """Draw the occupied leaves over the picture, only those with points that are seen, if given.
+
+    The second value is the depth to which they are drawn, if that is limited.
+    """
     pixels = imread(io.BytesIO(picture), format="png")[..., :3]
     height, width = pixels.shape[:2]
-    bounds, depth, limit = coarsened(cells)
+    chosen = cells["occupied"].copy()
+    if seen is not None:
+        chosen &= holding(cells, seen)
+    bounds, depth, limit = coarsened(cells, chosen)
     shallowest, deepest = (int(depth.min()), int(depth.max())) if len(depth) else (0, 0)
     colors, norm = _depth_colors(deepest, shallowest)
     with drawn("wires", 10, 9.2 * height / width) as figure:
@@ -117,16 +143,15 @@ def over_picture(picture: bytes, cells: Cells, projection: Projection) -> tuple[
 
 def through(cells: Cells, axis: int, value: float) -> npt.NDArray[np.bool_]:
     """Say which cells the plane where ``axis`` is ``value`` passes; at a face, the upper one."""
-    bounds = np.asarray(cells["bounds"])
+    bounds = cells["bounds"]
     top = bounds[:, 1, axis]
-    last = (value == top.max()) & (top == value)
+    last = (value == cells["root"][1, axis]) & (top == value)
     return np.asarray(((bounds[:, 0, axis] <= value) & (value < top)) | last)
 
 
 def middle(cells: Cells, camera: dict[str, Any] | None, bounds: Any) -> tuple[int, float]:
     """Choose the plane of a slice: through the scene's middle, and seen from the front."""
-    box = np.asarray(cells["bounds"])
-    low, high = (box[:, 0].min(axis=0), box[:, 1].max(axis=0)) if bounds is None else bounds
+    low, high = cells["root"] if bounds is None else bounds
     axis = 2 if camera is None else int(np.abs(camera["forward"]).argmax())
     return axis, float(low[axis] + high[axis]) / 2
 
@@ -135,8 +160,8 @@ def _slice(axes: Axes, cells: Cells, plane: tuple[int, float], colors: Any, norm
     axis, value = plane
     across, up = [a for a in range(3) if a != axis]
     hit = through(cells, axis, value)
-    bounds, depth = np.asarray(cells["bounds"])[hit], np.asarray(cells["depth"])[hit]
-    full = occupied(cells)[hit]
+    bounds, depth = cells["bounds"][hit], cells["depth"][hit]
+    full = cells["occupied"][hit]
     low, high = bounds[:, 0], bounds[:, 1]
     square = np.stack(
         [
@@ -151,7 +176,7 @@ def _slice(axes: Axes, cells: Cells, plane: tuple[int, float], colors: Any, norm
     axes.add_collection(
         PolyCollection(list(square), facecolors=shade, edgecolors="white", linewidths=0.25)
     )
-    first, last = bounds[:, 0].min(axis=0), bounds[:, 1].max(axis=0)
+    first, last = cells["root"]
     axes.set_xlim(first[across], last[across])
     axes.set_ylim(first[up], last[up])
     axes.set_aspect("equal")
@@ -166,8 +191,10 @@ def distinct(cells: Mapping[str, Cells]) -> list[list[str]]:
     """Group the methods that have the same cells."""
     groups: dict[bytes, list[str]] = {}
     for method, arrays in cells.items():
-        parts = [np.ascontiguousarray(arrays[name]).tobytes() for name in ("bounds", "depth")]
-        groups.setdefault(b"".join([*parts, occupied(arrays).tobytes()]), []).append(method)
+        # Structures list their cells in different orders.
+        order = np.lexsort([*arrays["bounds"][:, 0].T, arrays["depth"]])
+        parts = [arrays[name][order].tobytes() for name in ("bounds", "depth", "occupied")]
+        groups.setdefault(b"".join(parts), []).append(method)
     return list(groups.values())
 
 
@@ -176,7 +203,7 @@ def slices(
 ) -> bytes:
     """Draw the plane's slice through the cells of the first method of every group."""
     shown = [cells[methods[0]] for methods in groups]
-    depths = [np.asarray(arrays["depth"])[through(arrays, *plane)] for arrays in shown]
+    depths = [arrays["depth"][through(arrays, *plane)] for arrays in shown]
     deepest = max((int(d.max()) for d in depths if len(d)), default=0)
     shallowest = min((int(d.min()) for d in depths if len(d)), default=0)
     colors, norm = _depth_colors(deepest, shallowest)

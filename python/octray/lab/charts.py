@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
-from matplotlib.ticker import EngFormatter, FuncFormatter, MaxNLocator
+from matplotlib.ticker import EngFormatter, FuncFormatter
 
 from octray.lab import figures
 from octray.lab.figure import COLORS, FAINT, drawn, to_svg
@@ -22,10 +22,6 @@ _ROW = 0.24
 _FRAME = 0.95
 #: A range wider than this is drawn on a logarithmic axis.
 _WIDE = 30.0
-#: Histograms up to this number have a bar for each, others for ranges.
-_SINGLE = 40
-#: Methods named above one panel.
-_NAMED = 7
 _KINDS = dict(zip(figures.KINDS, ("o", "s", "^", "D"), strict=True))
 
 
@@ -170,6 +166,8 @@ def work(combinations: Sequence[Combination]) -> str | None:
                     for row, costs in enumerate(f.per_ray_by_kind for f in found)
                     if costs and costs[kind]["rays"] and all(n in costs[kind] for n in names)
                 ]
+                if not points:
+                    continue
                 shown += [value for value, _ in points]
                 axes.plot(
                     [value for value, _ in points],
@@ -189,62 +187,4 @@ def work(combinations: Sequence[Combination]) -> str | None:
             axes.set_title(title)
         handles, labels = panels[0].get_legend_handles_labels()
         figure.legend(handles, labels, loc="outside lower left", ncols=4)
-        return to_svg(figure)
-
-
-def _doubling(pairs: Sequence[tuple[int, int]]) -> dict[str, int]:
-    """Sum counts of 0, 1, 2, 3 to 4, 5 to 8 and so on."""
-    most = max(number for number, _ in pairs)
-    bins = {"0": sum(count for number, count in pairs if number == 0)}
-    low, high = 1, 1
-    while low <= most:
-        name = str(low) if low == high else f"{low}\N{EN DASH}{high}"
-        bins[name] = sum(count for number, count in pairs if low <= number <= high)
-        low, high = high + 1, high * 2
-    return bins
-
-
-def histograms(
-    name: str,
-    what: str,
-    combinations: Sequence[Combination],
-    values: Sequence[list[list[int]] | None],
-) -> str | None:
-    """Draw how many leaves have which ``what``; methods with the same numbers share a panel."""
-    groups: dict[tuple[tuple[int, int], ...], list[str]] = {}
-    for combination, value in zip(combinations, values, strict=True):
-        if value:
-            pairs = tuple((number, count) for number, count in value)
-            groups.setdefault(pairs, []).append(combination.method)
-    if not groups:
-        return None
-    columns = min(len(groups), 3)
-    lines = -(-len(groups) // columns)
-    tallest = max(len(methods) for methods in groups.values())
-    height = lines * (1.9 + 0.16 * min(tallest, _NAMED))
-    binned = max(number for pairs in groups for number, _ in pairs) > _SINGLE
-    with drawn(name, _WIDTH, height) as figure:
-        panels: Any = figure.subplots(lines, columns, squeeze=False, sharex=not binned)
-        for axes in panels.flat[len(groups) :]:
-            axes.set_visible(False)
-        for axes, (pairs, methods) in zip(panels.flat, groups.items(), strict=False):
-            numbers = [count for _, count in pairs]
-            if binned:
-                bins = _doubling(pairs)
-                numbers = list(bins.values())
-                axes.bar(range(len(bins)), numbers, color=COLORS[0], width=0.8)
-                axes.set_xticks(range(len(bins)), list(bins), fontsize=7, rotation=60)
-                axes.tick_params(axis="x", labelbottom=True)
-            else:
-                axes.bar([number for number, _ in pairs], numbers, color=COLORS[0], width=0.8)
-                axes.xaxis.set_major_locator(MaxNLocator(integer=True))
-            axes.set_xlabel(what)
-            if max(numbers) > _WIDE:
-                axes.set_yscale("symlog", linthresh=1, linscale=0.4)
-                axes.yaxis.set_major_formatter(EngFormatter())
-            axes.grid(axis="x", visible=False)
-            shown = methods[:_NAMED]
-            if len(methods) > _NAMED:
-                shown[-1] = f"and {len(methods) - _NAMED + 1} more"
-            axes.set_title("\n".join(shown), fontsize=7.5, fontweight="normal", family="monospace")
         return to_svg(figure)

@@ -9,21 +9,30 @@ from typing import Any
 KINDS = ("primary", "shadow", "reflected", "refracted")
 
 
+#: Parts of memory that are the scene's geometry, about the same for all methods.
+GEOMETRY = ("surfaces", "faces", "triangles")
+#: Entries of ``memory`` that are no parts.
+_NO_PARTS = ("peak_bytes", "total", "building")
+
+
 @dataclass
 class Figures:
     """Figures of one method; ``None`` is what was not measured, or what the method has not."""
 
-    #: Bytes of all structures, and by part.
+    #: Bytes of what finds surfaces; the most while it was made; all by part, geometry too.
     memory: int | None = None
+    building: int | None = None
     parts: dict[str, int] | None = None
     #: Numbers of nodes by kind.
     nodes: dict[str, int] | None = None
     #: Why the builder did not divide further.
     stopped: dict[str, Any] | None = None
-    #: Pairs of a depth and how many leaves have it, of a number of objects and how many leaves
-    #: hold so many.
+    #: For each depth, how many leaves are empty and how many occupied: (depth, empty, occupied).
     depths: list[list[int]] | None = None
+    #: Pairs of a number of objects and how many occupied leaves hold so many.
     per_leaf: list[list[int]] | None = None
+    #: The hash table, where there is one.
+    lvsi: dict[str, Any] | None = None
     #: How often cells were marked, and how each step of the triangle-cube test decided.
     marks: dict[str, int] | None = None
     triangle_cube_steps: dict[str, int] | None = None
@@ -38,6 +47,13 @@ class Figures:
         """Give the number of all nodes."""
         return None if self.nodes is None else sum(self.nodes.values())
 
+    @property
+    def structure(self) -> dict[str, int] | None:
+        """Give the parts of memory without geometry."""
+        if self.parts is None:
+            return None
+        return {part: size for part, size in self.parts.items() if part not in GEOMETRY}
+
     def each_ray(self, *names: str) -> float | None:
         """Sum these costs of a ray; ``None`` if none of them was counted."""
         counted = self.per_ray or {}
@@ -45,39 +61,67 @@ class Figures:
         return sum(known) if known else None
 
 
+def _depths(trees: list[dict[str, Any]]) -> list[list[int]] | None:
+    """Sum the leaves of octrees by depth; voxels of a grid have none."""
+    octrees = [tree for tree in trees if tree["resolution"] is None]
+    if not octrees:
+        return None
+    deepest = max(tree["depth"] for tree in octrees)
+
+    def leaves(kind: str, depth: int) -> int:
+        lists = [tree[f"{kind}_by_depth"] for tree in octrees]
+        return sum(numbers[depth] for numbers in lists if depth < len(numbers))
+
+    return [[d, leaves("empty", d), leaves("occupied", d)] for d in range(deepest + 1)]
+
+
+def _per_leaf(trees: list[dict[str, Any]]) -> list[list[int]]:
+    """Sum the leaves of all trees by how many objects they hold."""
+    counts: dict[int, int] = {}
+    for tree in trees:
+        for number, leaves in tree["objects_per_leaf"]["counts"]:
+            counts[number] = counts.get(number, 0) + leaves
+    return [[number, counts[number]] for number in sorted(counts)]
+
+
 def _of_trees(figures: Figures, trees: dict[str, Any]) -> None:
-    """Take numbers of nodes and of bytes from the trees of a rendering's report."""
-    cells, wide = trees.get("cells"), trees.get("wide")
+    """Take what there is to say about cells, over solids and over triangles together."""
+    known = [tree for tree in trees.values() if tree is not None]
+    cells = [tree for tree in known if "occupied" in tree]
     nodes: dict[str, int] = {}
-    parts: dict[str, int] = {}
-    if cells is not None:
-        nodes.update({kind: cells[kind] for kind in ("empty", "occupied", "divided")})
-        parts["cells"] = cells["bytes"]
-        figures.stopped = {
-            why.removeprefix("stopped_by_"): value
-            for why, value in cells.items()
-            if why.startswith("stopped_by_")
-        }
-    if wide is not None:
-        nodes["wide"] = wide["nodes"]
-        parts["triangles"] = wide["bytes"]
-    if nodes:
-        figures.nodes = nodes
-    figures.parts = parts
-    figures.memory = sum(parts.values())
+    for kind in ("empty", "occupied", "divided") if cells else ():
+        nodes[kind] = sum(tree[kind] for tree in cells)
+    wide = [tree["nodes"] for tree in known if "nodes" in tree]
+    if any(wide):
+        nodes["wide"] = sum(wide)
+    figures.nodes = nodes or None
+    if not cells:
+        return
+    figures.depths, figures.per_leaf = _depths(cells), _per_leaf(cells)
+    figures.stopped = {
+        "depth": sum(tree["stopped_by_depth"] for tree in cells),
+        "size": sum(tree["stopped_by_size"] for tree in cells),
+        "memory": any(tree["stopped_by_memory"] for tree in cells),
+    }
+    figures.lvsi = next((tree["lvsi"] for tree in cells if tree["lvsi"]), None)
 
 
 def of(report: dict[str, Any] | None, stats: dict[str, Any] | None) -> Figures:
     """Collect the figures of one method; nothing is invented where something is absent."""
-    del stats
     figures = Figures()
+    built = stats or report
+    if built is not None:
+        _of_trees(figures, built["trees"])
+        memory = built["memory"]
+        figures.parts = {part: n for part, n in memory.items() if part not in _NO_PARTS}
+        figures.memory = sum((figures.structure or {}).values())
+        figures.building = memory["building"]
+        figures.marks = built.get("marks")
+        figures.triangle_cube_steps = built.get("triangle_cube_steps")
     if report is not None:
-        _of_trees(figures, report["trees"])
         figures.rays = dict(report["rays"])
         figures.per_ray = dict(report["tests_per_ray"])
-        by_kind = report.get("tests_by_kind")
-        if by_kind is not None:
-            figures.per_ray_by_kind = {kind: dict(by_kind[kind]) for kind in KINDS}
+        figures.per_ray_by_kind = {kind: dict(report["tests_by_kind"][kind]) for kind in KINDS}
     return figures
 
 

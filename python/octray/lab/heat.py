@@ -10,6 +10,7 @@ from matplotlib.colors import LogNorm
 from matplotlib.ticker import FuncFormatter
 
 from octray.lab.figure import drawn, to_png
+from octray.lab.table import number
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -27,10 +28,11 @@ def totals(cost: npt.NDArray[np.float32]) -> npt.NDArray[np.float64]:
 
 
 def maps(costs: Mapping[str, npt.NDArray[np.float32]]) -> bytes:
-    """Draw all heat maps side by side, from black (1 or less) to the highest of all."""
+    """Draw all heat maps side by side, from the lowest cost of all (at least 1) to the highest."""
     sums = {method: totals(cost) for method, cost in costs.items()}
     top = max(float(total.max()) for total in sums.values())
-    norm = LogNorm(1, max(top, 10.0))
+    low = max(min(float(total.min()) for total in sums.values()), 1.0)
+    norm = LogNorm(low, max(top, 10 * low))
     columns = min(len(sums), _COLUMNS)
     lines = -(-len(sums) // columns)
     height, width = next(iter(sums.values())).shape
@@ -39,9 +41,9 @@ def maps(costs: Mapping[str, npt.NDArray[np.float32]]) -> bytes:
         for axes in panels.flat:
             axes.set_axis_off()
         for axes, (method, total) in zip(panels.flat, sums.items(), strict=False):
-            axes.imshow(np.maximum(total, 1), norm=norm, cmap="inferno", interpolation="nearest")
+            axes.imshow(np.maximum(total, low), norm=norm, cmap="inferno", interpolation="nearest")
             axes.set_title(
-                f"{method}\nmean {total.mean():.3g}",
+                f"{method}\nmean {number(total.mean())}",
                 fontsize=7.5,
                 fontweight="normal",
                 family="monospace",

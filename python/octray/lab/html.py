@@ -7,9 +7,7 @@ from importlib import resources
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from octray.lab import cells, charts, figures, heat
-from octray.lab.figure import data_uri
-from octray.lab.projection import Projection
+from octray.lab import figures, sections
 from octray.lab.result import Status
 from octray.lab.selection import YARDSTICK
 from octray.lab.table import ABSENT, COLUMNS, number, row
@@ -46,36 +44,21 @@ def page(report: Report, *, cut: tuple[int, float] | None = None) -> str:
     """Give the whole page."""
     title = f"{Path(report.path).name}: methods side by side"
     style = resources.files("octray.lab").joinpath("page.css").read_text(encoding="utf-8")
-    sections = [
+    parts = [
         _head(report, title),
         _summary(report),
-        _charts(report),
-        _heat(report),
-        _octree(report, cut),
+        sections.charts_section(report),
+        sections.heat_section(report),
+        sections.octree_section(report, cut),
         _conditions(report),
     ]
     return (
         '<!DOCTYPE html>\n<html lang="en">\n<head>\n<meta charset="utf-8">\n'
         '<meta name="viewport" content="width=device-width, initial-scale=1">\n'
         f"<title>{_escape(title)}</title>\n<style>\n{style}</style>\n</head>\n<body>\n"
-        + "\n".join(part for part in sections if part)
+        + "\n".join(part for part in parts if part)
         + "\n</body>\n</html>\n"
     )
-
-
-def _figure(content: str | None, label: str, caption: str) -> str:
-    """Frame a chart; an absent one is left out."""
-    if content is None:
-        return ""
-    return (
-        f'<figure role="group" aria-label="{_escape(label)}">\n{content}\n'
-        f"<figcaption>{caption}</figcaption>\n</figure>"
-    )
-
-
-def _image(png: bytes, label: str, kind: str = "") -> str:
-    style = f' class="{kind}"' if kind else ""
-    return f'<img{style} src="{data_uri(png)}" alt="{_escape(label)}">'
 
 
 def _plural(count: int, one: str) -> str:
@@ -136,8 +119,8 @@ def _summary(report: Report) -> str:
     shown = ""
     if picture is not None:
         label = f"The scene, rendered by {report.reference}"
-        shown = _figure(
-            _image(picture, label, "scene"),
+        shown = sections.framed(
+            sections.picture_element(picture, label, "scene"),
             label,
             f"The picture that every method has to give; this one is by"
             f" <code>{report.reference}</code>.",
@@ -186,128 +169,6 @@ def _row(combination: Combination) -> str:
     return (
         f'<tr><th scope="row" class="left mono">{_escape(name)}</th>{cells_of_row}'
         f'<td class="left note{"" if fine else " bad"}">{_escape(verdict)}</td></tr>'
-    )
-
-
-def _charts(report: Report) -> str:
-    them = report.combinations
-    found = [figures.of(c.report, c.stats) for c in them]
-    return "\n".join(
-        [
-            "<h2>Time</h2>",
-            _figure(
-                charts.times(them),
-                "Seconds of building and of rendering",
-                "A dot is the median, a tick one repetition, the pale band their range. Repetitions"
-                " of all methods were taken in turns, so that a disturbance of the machine meets"
-                " them alike.",
-            ),
-            "<h2>Memory and nodes</h2>",
-            _figure(
-                charts.stacked(
-                    "memory", "Memory of the structure", them, [f.parts for f in found], unit="B"
-                ),
-                "Memory of the structure by part",
-                "Bytes of what a method builds to find surfaces, by part; the scene itself, which"
-                " is the same for all, is not in it.",
-            ),
-            _figure(
-                charts.stacked("nodes", "Nodes by kind", them, [f.nodes for f in found]),
-                "Nodes by kind",
-                "Empty cells hold nothing that a ray could meet, occupied ones do, divided ones"
-                " have children.",
-            ),
-            _figure(
-                charts.histograms("depths", "depth", them, [f.depths for f in found]),
-                "Leaves by depth",
-                "How many leaves lie at which depth of the octree; 0 is the whole scene.",
-            ),
-            _figure(
-                charts.histograms("leaves", "objects in a leaf", them, [f.per_leaf for f in found]),
-                "Leaves by how many objects they hold",
-                "How many leaves hold how many objects: what a ray that enters one has to ask.",
-            ),
-            "<h2>Work per ray</h2>",
-            _figure(
-                charts.work(them),
-                "Steps, look-ups and tests per ray, by kind of ray",
-                "What one ray cost on average, by kind of ray. Shadow rays may stop at the first"
-                " thing they meet, and rays from mirrors and through glass start at a surface.",
-            ),
-        ]
-    )
-
-
-def _heat(report: Report) -> str:
-    costs = report.drawings.cost
-    if not costs:
-        return ""
-    label = "Cost of every pixel, by method"
-    return "\n".join(
-        [
-            "<h2>Where the work is</h2>",
-            _figure(
-                _image(heat.maps(costs), label),
-                label,
-                "Steps and tests of all rays of a pixel, shadows and reflections with them. All"
-                " maps have the same scale, so that the same colour is the same cost; above each"
-                " is its mean.",
-            ),
-        ]
-    )
-
-
-def _octree(report: Report, cut: tuple[int, float] | None) -> str:
-    drawn = report.drawings.cells
-    if not drawn:
-        return ""
-    parts = ["<h2>The cells</h2>"]
-    octrees = [name for name in drawn if not name.startswith("grid")]
-    camera = report.scene["camera"]
-    if octrees and camera is not None and report.drawings.picture is not None:
-        parts.append(_wires(report, octrees[0], camera))
-    plane = cut or cells.middle(next(iter(drawn.values())), camera, report.scene["bounds"])
-    groups = cells.distinct(drawn)
-    label = f"Slice through the cells at {'xyz'[plane[0]]} = {plane[1]:.6g}"
-    same = "; ".join(
-        f"<code>{_escape(names[0])}</code> has the cells of"
-        f" {', '.join(f'<code>{_escape(name)}</code>' for name in names[1:])} too"
-        for names in groups
-        if len(names) > 1
-    )
-    parts.append(
-        _figure(
-            _image(cells.slices(drawn, groups, plane), label),
-            label,
-            f"{label}. Full colours are cells that hold something, pale ones are empty; the colour"
-            " is the depth. Methods with the same cells share a panel"
-            f"{': ' + same if same else ''}.",
-        )
-    )
-    return "\n".join(parts)
-
-
-def _wires(report: Report, method: str, camera: dict[str, Any]) -> str:
-    crop = report.options["crop"]
-    projection = Projection(
-        camera,
-        tuple(report.options["size"]),
-        (crop[0], crop[1]) if crop else (0, 0),
-    )
-    picture = report.drawings.picture or b""
-    png, limit = cells.over_picture(picture, report.drawings.cells[method], projection)
-    coarse = (
-        ""
-        if limit is None
-        else f" There are too many to draw them all: those below depth {limit} are drawn as the"
-        f" cells of depth {limit} that they lie in."
-    )
-    label = f"The octree of {method} over the picture"
-    return _figure(
-        _image(png, label),
-        label,
-        f"The leaves of <code>{_escape(method)}</code> that hold something, as frames over the"
-        f" picture, coloured by depth. Frames behind the surfaces are drawn too.{coarse}",
     )
 
 

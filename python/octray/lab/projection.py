@@ -35,13 +35,32 @@ class Projection:
     #: The first column and row of the part that is shown.
     corner: tuple[int, int] = (0, 0)
 
+    def _axes(self) -> tuple[Floats, Floats, Floats]:
+        """Give what points forward, and what spans the picture's width and height."""
+        camera, (width, height) = self.camera, self.size
+        right = np.array(camera["right"], dtype=np.float64)
+        if camera["fit_aspect"]:
+            right = right * (width / height)
+        return np.array(camera["forward"], dtype=np.float64), right, np.array(camera["up"])
+
+    def rays(self, shape: tuple[int, int]) -> Floats:
+        """Give the rays through the middles of the part's pixels; ``shape`` is rows and columns."""
+        forward, right, up = self._axes()
+        width, height = self.size
+        u = (np.arange(shape[1]) + self.corner[0] + 0.5) / width - 0.5
+        v = 0.5 - (np.arange(shape[0]) + self.corner[1] + 0.5) / height
+        across = u[None, :, None] * right + v[:, None, None] * up
+        eye = np.array(self.camera["eye"])
+        if self.camera["kind"] == "perspective":
+            parts = np.broadcast_to(eye, across.shape), forward + across
+        else:
+            parts = eye + across, np.broadcast_to(forward, across.shape)
+        return np.concatenate(parts, axis=-1).reshape(-1, 6)
+
     def depth_and_pixels(self, points: Floats) -> tuple[Floats, Floats]:
         """Give how far along the view points (..., 3) lie, and their pixels (..., 2)."""
         camera, (width, height) = self.camera, self.size
-        right = np.array(camera["right"])
-        if camera["fit_aspect"]:
-            right = right * (width / height)
-        axes = np.stack([np.array(camera["forward"]), right, np.array(camera["up"])], axis=1)
+        axes = np.stack(self._axes(), axis=1)
         # p - eye = s forward + u right + v up, and u, v are across the picture at s = 1.
         s, u, v = np.moveaxis((points - np.array(camera["eye"])) @ np.linalg.inv(axes).T, -1, 0)
         scale = s if camera["kind"] == "perspective" else np.ones_like(s)
@@ -68,3 +87,11 @@ class Projection:
         behind = depth <= _NEAR
         ends = np.where(behind[:, :, None], crossing[:, None], ends)
         return self.depth_and_pixels(ends)[1]
+
+
+def view(
+    camera: dict[str, Any], size: list[int], crop: list[int] | None
+) -> tuple[Projection, tuple[int, int]]:
+    """Give the projection of a picture or of a part of it, and its rows and columns."""
+    x0, y0, x1, y1 = crop or (0, 0, *size)
+    return Projection(camera, (size[0], size[1]), (x0, y0)), (y1 - y0, x1 - x0)

@@ -84,6 +84,7 @@ class Combination:
             "build": {"times_s": self.build_s, "median_s": self.build},
             "memory": {
                 "structure_bytes": found.memory,
+                "building_bytes": found.building,
                 "parts": found.parts,
                 "loaded_bytes": self.loaded_bytes,
                 "resident_bytes": self.resident_bytes,
@@ -92,6 +93,7 @@ class Combination:
             "stopped": found.stopped,
             "depth_histogram": found.depths,
             "objects_per_leaf": found.per_leaf,
+            "lvsi": found.lvsi,
             "marks": found.marks,
             "triangle_cube_steps": found.triangle_cube_steps,
             "rays": found.rays,
@@ -129,7 +131,10 @@ class Drawings:
     picture: bytes | None = None
     #: Cost of every pixel by method, (height, width, 3): steps, surfaces and triangles tested.
     cost: dict[str, npt.NDArray[np.float32]] = field(default_factory=dict)
-    #: Cells by method: ``bounds`` (n, 2, 3), ``depth`` (n), ``kind`` (n).
+    #: Points of the scene that the picture shows, (n, 3), and the method whose cells go with it.
+    seen: npt.NDArray[np.float64] | None = None
+    framed: str | None = None
+    #: Cells by method: ``root`` (2, 3), ``bounds`` (n, 2, 3), ``depth`` (n), ``occupied`` (n).
     cells: dict[str, dict[str, npt.NDArray[Any]]] = field(default_factory=dict)
 
 

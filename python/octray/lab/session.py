@@ -11,6 +11,7 @@ import numpy as np
 
 from octray.lab.machine import available_bytes
 from octray.lab.process import WorkerError, WorkerProcess
+from octray.lab.projection import view
 from octray.lab.result import Combination, Group, Report, Status
 from octray.lab.selection import YARDSTICK
 
@@ -261,9 +262,27 @@ class Session:
             if self._wait(member)["cells"]:
                 with np.load(cells) as arrays:
                     drawings.cells[name] = dict(arrays)
+                self._look(member)
         except WorkerError as error:
             self._note(f"{name} has no picture of its costs: {error}")
         self._advance(member, 1)
+
+    def _look(self, member: Member) -> None:
+        """Ask once, of the first octree, which points of the scene the picture shows."""
+        name, camera, drawings = (
+            member.combination.method,
+            self.report.scene["camera"],
+            self.report.drawings,
+        )
+        if drawings.framed is not None or name.startswith("grid") or camera is None:
+            return
+        options = self.report.options
+        projection, shape = view(camera, options["size"], options["crop"])
+        rays, seen = self.folder / "rays.npy", self.folder / "seen.npy"
+        np.save(rays, projection.rays(shape))
+        member.worker.send("seen", rays=str(rays), file=str(seen))
+        self._wait(member)
+        drawings.seen, drawings.framed = np.load(seen), name
 
     def _mark_unfinished(self, status: Status) -> None:
         """Say of every method that is not done why."""

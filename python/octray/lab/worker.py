@@ -86,13 +86,8 @@ class Worker:
         return {
             "build_s": seconds,
             "resident_bytes": resident_bytes(),
-            "stats": self._figure("stats"),
+            "stats": self.scene.stats(accel=self.accel),
         }
-
-    def _figure(self, name: str) -> Any:
-        """Ask the scene for figures that not every build of octray has."""
-        ask = getattr(self.scene, name, None)
-        return None if ask is None else ask(accel=self.accel)
 
     def do_render(self, options: dict[str, Any], folder: str, png: bool) -> dict[str, Any]:
         """Render; leave the picture in the folder under its hash, unless one is there.
@@ -119,14 +114,27 @@ class Worker:
         save(Path(file), image.to_numpy())
         return {}
 
+    def do_seen(self, rays: str, file: str) -> dict[str, Any]:
+        """Leave in a file the points where rays first meet something."""
+        hits = self.scene.cast_rays(np.load(rays), accel=self.accel)
+        save(Path(file), hits.position[hits.hit])
+        return {}
+
     def do_cells(self, file: str) -> dict[str, Any]:
         """Leave the cells in a file; without one if the method has none."""
-        cells = self._figure("cells")
-        if cells is None:
-            return {"cells": None}
+        try:
+            cells = self.scene.cells(accel=self.accel)
+        except ValueError:  # it divides no space, or there is nothing in it
+            return {"cells": 0}
         with Path(file).open("wb") as out:
-            np.savez(out, bounds=cells["bounds"], depth=cells["depth"], kind=cells["kind"])
-        return {"cells": len(cells["bounds"])}
+            np.savez(
+                out,
+                root=np.array(cells.root),
+                bounds=cells.bounds,
+                depth=cells.depth,
+                occupied=cells.kind == "occupied",
+            )
+        return {"cells": len(cells)}
 
 
 def _tuples(options: dict[str, Any]) -> dict[str, Any]:

@@ -4,6 +4,7 @@ mod cells;
 mod interact;
 mod leaf;
 mod numbering;
+mod operand_boxes;
 mod prepare;
 mod roots;
 mod spans;
