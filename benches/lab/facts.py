@@ -232,6 +232,7 @@ def _tables(results: Results) -> dict[str, str]:
     looked: dict[str, float] = {}
     time: dict[str, float] = {}
     used: dict[str, float] = {}
+    sizes: dict[str, float] = {}
     for scene in dict.fromkeys(run.scene for run in results.of("table")):
         runs = {run.label: run for run in results.of("table", scene)}
         if {"prime", "power of two"} - runs.keys():
@@ -243,6 +244,7 @@ def _tables(results: Results) -> dict[str, str]:
         title = results.scene(scene).title
         if a.table and b.table:
             chains[title] = a.table["longest_chain"] / max(b.table["longest_chain"], 1)
+            sizes[title] = a.table["table_size"] / b.table["table_size"]
             share = a.table["heads_used"] / a.table["table_size"]
             used[title] = share / (b.table["heads_used"] / b.table["table_size"])
         mine, other = c.lookups(a), c.lookups(b)
@@ -252,7 +254,13 @@ def _tables(results: Results) -> dict[str, str]:
         if times[0] and times[1]:
             time[title] = times[0] / times[1]
     found: dict[str, str] = {}
-    for name, ratios in (("chain", chains), ("lookups", looked), ("time", time), ("used", used)):
+    for name, ratios in (
+        ("rows", sizes),
+        ("chain", chains),
+        ("lookups", looked),
+        ("time", time),
+        ("used", used),
+    ):
         if ratios:
             found |= c.Ratios(ratios, c.NOISE if name == "time" else 0.0).facts(f"table.{name}")
     return found

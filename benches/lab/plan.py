@@ -130,10 +130,12 @@ MODES = {
     )
 }
 
-#: Sizes of the hash table. Both numbers lie close together, so that only their kind differs.
+#: Sizes of the hash table: the next prime, the next power of two, and primes by how full it gets.
 TABLES: tuple[tuple[str, dict[str, Any]], ...] = (
     ("prime", {"lvsi_table": "prime"}),
     ("power of two", {"lvsi_table": "power-of-two"}),
+    ("prime, a quarter full", {"lvsi_table": "prime", "lvsi_load": 0.25}),
+    ("prime, twice full", {"lvsi_table": "prime", "lvsi_load": 2.0}),
 )
 
 #: One criterion changed at a time; the label says which cells are divided.

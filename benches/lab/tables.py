@@ -100,7 +100,7 @@ def table_sizes(results: Results) -> str:
         for method in (LVSI, LVSI_EMPTY):
             row = run.row(method)
             if row is None:
-                rows.append([run.scene, run.label, f"`{method}`", *[c.ABSENT] * 5])
+                rows.append([run.scene, run.label, f"`{method}`", *[c.ABSENT] * 6])
                 continue
             table = row.table or {}
             time = c.ratio(run, c.seconds, method, CONTROL)
@@ -113,12 +113,14 @@ def table_sizes(results: Results) -> str:
                         f"{table[key]:,.0f}" if key in table else c.ABSENT
                         for key in ("table_size", "heads_used", "longest_chain")
                     ),
+                    c.written(c.memory(row), c.in_bytes),
                     c.written(c.lookups(row)),
                     c.written(time, c.times),
                 ]
             )
-    head = ["scene", "table size", "method", "rows", "used", "longest chain", "look-ups per ray"]
-    return markdown([*head, f"time / {CONTROL}"], rows, left=3)
+    head = ["scene", "table size", "method", "rows", "used", "longest chain"]
+    head += ["memory", "look-ups per ray", f"time / {CONTROL}"]
+    return markdown(head, rows, left=3)
 
 
 def criteria(results: Results) -> str:
