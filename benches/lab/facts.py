@@ -203,26 +203,31 @@ def _sweep(results: Results) -> dict[str, str]:
     """How far memory and time range while the criteria change."""
     found: dict[str, str] = {}
     more, of = 0, 0
-    spreads: dict[str, list[float]] = {"bytes": [], "time": []}
+    spreads: dict[str, list[float]] = {"bytes": [], "time": [], "near": []}
     for scene in dict.fromkeys(run.scene for run in results.of("criteria")):
-        runs = list(results.of("criteria", scene))
-        sizes = [row.bytes for run in runs if (row := run.row(ORDERED)) and row.bytes]
-        ratios = [c.ratio(run, c.seconds, ORDERED, CONTROL) for run in runs]
-        known = [ratio for ratio in ratios if ratio is not None]
-        if len(sizes) < 2 or len(known) < 2:
+        settings = []
+        for run in results.of("criteria", scene):
+            row, ratio = run.row(ORDERED), c.ratio(run, c.seconds, ORDERED, CONTROL)
+            if row is not None and row.bytes and ratio:
+                settings.append((row.bytes, ratio))
+        if len(settings) < 2:
             continue
-        memory, time = max(sizes) / min(sizes), max(known) / min(known)
+        sizes, times = zip(*settings, strict=True)
+        memory, time = max(sizes) / min(sizes), max(times) / min(times)
         spreads["bytes"].append(memory)
         spreads["time"].append(time)
+        # Settings that a user would choose: none takes more than twice the least time.
+        near = [size for size, ratio in settings if ratio <= 2 * min(times)]
+        spreads["near"].append(max(near) / min(near))
         of += 1
         more += memory > time
     if of:
         found["claim.criteria"] = c.verdict(more, of)
         found["claim.criteria.shown"] = str(more)
         found["claim.criteria.of"] = str(of)
-        for name in ("bytes", "time"):
-            found[f"criteria.{name}.median"] = c.times(statistics.median(spreads[name]))
-            found[f"criteria.{name}.most"] = c.times(max(spreads[name]))
+        for name, ranges in spreads.items():
+            found[f"criteria.{name}.median"] = c.times(statistics.median(ranges))
+            found[f"criteria.{name}.most"] = c.times(max(ranges))
     return found
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from octray import lab
+from octray.lab import machine
 from results import Measured, Row
 
 if TYPE_CHECKING:
@@ -12,19 +13,21 @@ if TYPE_CHECKING:
 
     from plan import Job, Mode
 
-#: What one method may take beyond its scene.
-MEMORY_BYTES = 4 << 30
+#: What one method may take beyond its scene: this share of the free memory, or so much where the
+#: system does not tell.
+SHARE, UNKNOWN_BYTES = 0.5, 4 << 30
 
 
 def measure(job: Job, path: Path, shapes: int, mode: Mode, budget: float) -> Measured:
     """Run the job on the scene in ``path``, in at most ``budget`` seconds."""
+    free = machine.available_bytes()
     report = lab.run(
         path,
         accel=job.methods,
         repeat=job.repeat or mode.repeat,
         size=job.size or mode.size,
         tree=job.tree,
-        memory=MEMORY_BYTES,
+        memory=UNKNOWN_BYTES if free is None else int(SHARE * free),
         timeout=job.timeout,
         budget=budget,
     )

@@ -36,7 +36,7 @@ def scenes(results: Results) -> str:
 
 
 def _by_scene(results: Results, show: Show) -> str:
-    """Methods by scenes, for the comparison."""
+    """Methods by scenes, for the comparison; those that have nothing to show are left out."""
     runs = list(results.of("comparison"))
     names: dict[str, None] = {}
     for run in runs:
@@ -48,7 +48,8 @@ def _by_scene(results: Results, show: Show) -> str:
             row = run.row(name)
             value = None if row is None else show(run, row)
             cells.append(value or c.ABSENT)
-        rows.append([f"`{name}`", *cells])
+        if any(cell not in ("0", c.ABSENT) for cell in cells):
+            rows.append([f"`{name}`", *cells])
     return markdown(["method", *(run.scene for run in runs)], rows)
 
 
