@@ -177,6 +177,8 @@ def _growth(mode: Mode, sizes: list[int]) -> Iterator[Job]:
     for shapes, scene in itertools.product(sizes, mode.growing):
         many = shapes > 100_000
         methods: tuple[str, ...] = GROWN if many else GROWING
+        if scene == "drilled" and many:
+            methods = ("grid", ORDERED)  # each takes gigabytes while it builds
         if scene == "mount" and many:
             methods = ("auto", *methods)  # it has a structure of its own for triangles
         if shapes <= mode.flat_limit:
