@@ -169,7 +169,7 @@ def test_every_mode_asks_for_what_the_page_wants() -> None:
 
 def test_a_tiny_run_makes_a_whole_page(tmp_path: Path) -> None:
     command = [sys.executable, str(RUN), "--mode", "tiny", "--output", str(tmp_path)]
-    done = subprocess.run(command, capture_output=True, text=True, timeout=120, check=False)
+    done = subprocess.run(command, capture_output=True, text=True, timeout=600, check=False)
     assert done.returncode == 0, done.stderr
     found = results.load(tmp_path / "results.json")
     assert found.skipped == []

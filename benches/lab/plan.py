@@ -124,8 +124,8 @@ MODES = {
             growing=("drilled",),
             swept=("balls",),
             every=5,
-            budget=60,
-            timeout=10,
+            budget=600,
+            timeout=120,
         ),
     )
 }
