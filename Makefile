@@ -11,7 +11,7 @@ export PIP_DISABLE_PIP_VERSION_CHECK := 1
 BIN := .venv/bin
 RUST_SOURCES := $(shell find crates -name '*.rs' -o -name Cargo.toml) Cargo.toml Cargo.lock
 
-.PHONY: help demo test test-rust test-python lint setup peers peers-speed clean toolchain
+.PHONY: help demo test test-rust test-python lint setup lab peers peers-speed clean toolchain
 .DELETE_ON_ERROR:
 
 help: ## Print this list
@@ -38,6 +38,11 @@ lint: .venv/tools ## Check formatting, lints and types of both languages
 	$(BIN)/python -m mypy.stubtest octray._core
 
 setup: .venv/tools ## Install octray and the tools of its developers into .venv
+
+LAB ?= full
+
+lab: .venv/lab ## Run every method on scenes of all sizes into docs/lab; LAB=quick takes a minute
+	@$(BIN)/python benches/lab/run.py --mode $(LAB)
 
 peers: .venv-peers/installed ## Run the same scenes through octray and the peers that are installed
 	@$(PEERS_PYTHON) benches/peers/compare.py
@@ -69,6 +74,10 @@ DEVELOP := VIRTUAL_ENV='$(CURDIR)/.venv' $(BIN)/maturin develop --release
 
 .venv/tools: .venv/installed pyproject.toml
 	$(DEVELOP) --extras dev
+	@touch $@
+
+.venv/lab: .venv/installed pyproject.toml
+	$(DEVELOP) --extras lab
 	@touch $@
 
 # Peers have an environment of their own; one that cannot be installed here is left out and said so.
