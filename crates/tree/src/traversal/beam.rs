@@ -28,7 +28,7 @@ use crate::CellTree;
 use crate::cell_tree::{Node, Slabs, Waiting, WalkStack};
 
 /// Cells are divided for the beam while they are larger than this many times its cross-section there.
-const CELL_PER_WIDTH: f64 = 2.0;
+const CELL_PER_WIDTH: f64 = 1.0;
 /// Beams wider than this share of the cube are given up.
 const WIDEST: f64 = 0.25;
 /// The most entry cells of a beam: from then on the cells that it meets stay as they are.
@@ -40,7 +40,6 @@ pub struct BeamMemory {
     /// Front to back for every ray of the run.
     entries: Vec<Waiting>,
     waiting: Vec<Waiting>,
-    main_axis: usize,
 }
 
 /// The linear function of `w` through two values at the ends of the beam.
@@ -175,7 +174,10 @@ impl CellTree {
         let root_size = self.root().size().x;
         let margin = root_size * Self::CONTENT_MARGIN;
         let beam = Beam::around(&self.root().inflated(margin), rays)?;
-        memory.main_axis = beam.main_axis;
+        if beam.from > beam.to {
+            // All pass by.
+            return Some(0);
+        }
         let mut root = Waiting {
             node: self.root_node().encode(),
             min: self.root().min,
@@ -248,9 +250,10 @@ impl CellTree {
         let root_size = self.root().size().x;
         let slabs = Slabs::new(ray, root_size);
         let mut limit = within.end;
-        // Grown cells overlap: the next one may begin so much earlier than this one.
-        let overlap = 2.0 * Self::CONTENT_MARGIN * root_size;
-        let overlap = overlap / ray.direction[memory.main_axis].abs();
+        // Grown cells overlap: a later one may begin so much before an earlier one.
+        let slowest = ray.direction.abs().to_array().into_iter();
+        let slowest = slowest.filter(|x| *x > 0.0).fold(f64::INFINITY, f64::min);
+        let overlap = 2.0 * Self::CONTENT_MARGIN * root_size / slowest;
         let WalkStack(stack) = stack;
         stack.clear();
         let mut entered = 0;

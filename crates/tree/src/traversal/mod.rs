@@ -6,6 +6,8 @@
 //! [`CellTree::CONTENT_MARGIN`]: crate::CellTree::CONTENT_MARGIN
 
 mod beam;
+#[cfg(test)]
+mod beam_tests;
 mod fujimoto_iwata;
 mod stepper;
 mod sung;
