@@ -50,12 +50,18 @@ fn answers(world: &World, rays: &[Ray]) -> Answers {
         })
         .collect();
     world.occluded(&departing, &mut occluded, &mut counters);
+    // To a lamp, on whichever side of the surface it is; `departing` goes along the normal.
     let to_lamp: Vec<RayQuery> = departing
         .iter()
-        .map(|query| RayQuery {
-            ray: Ray::new(query.ray.origin, LAMP - query.ray.origin),
-            t_max: 1.0,
-            ..*query
+        .map(|query| {
+            let ray = Ray::new(query.ray.origin, LAMP - query.ray.origin);
+            let mut departure = query.departure;
+            departure.outward = ray.direction.dot(query.ray.direction) > 0.0;
+            RayQuery {
+                ray,
+                t_max: 1.0,
+                departure,
+            }
         })
         .collect();
     let mut dark = Vec::new();
@@ -93,7 +99,18 @@ fn answers(world: &World, rays: &[Ray]) -> Answers {
 fn conform(solids: &[(Solid, i32)], rays: &[Ray]) -> Answers {
     let expected = answers(&world(solids, Method::Brute), rays);
     for method in methods() {
-        assert_eq!(answers(&world(solids, method), rays), expected, "{method}");
+        let found = answers(&world(solids, method), rays);
+        // One by one: all answers together would fill pages.
+        for (what, same) in [
+            ("closest", found.closest == expected.closest),
+            ("occluded", found.occluded == expected.occluded),
+            ("dark", found.dark == expected.dark),
+            ("crossings", found.crossings == expected.crossings),
+            ("chords", found.chords == expected.chords),
+            ("regions", found.regions == expected.regions),
+        ] {
+            assert!(same, "{what} by {method}");
+        }
     }
     expected
 }
