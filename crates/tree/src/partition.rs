@@ -1,12 +1,12 @@
 //! A partition of space into cells, kept and walked in one of several ways: the table of what can be
 //! combined.
 
-use octray_math::{Aabb, DVec3, Interval, Ray};
+use octray_math::{Aabb, CellKey, DVec3, Interval, Ray};
 
 use crate::cell_tree::{
     CellTree, CellTreeStats, Criteria, Node, Subdivide, WalkStack, enclosing_cube,
 };
-use crate::encoding::{Lvsi, LvsiStats, LvsiStore, TableSize};
+use crate::encoding::{Lvsi, LvsiStats, LvsiStore, LvsiTable};
 use crate::grid::Grid;
 use crate::traversal::{BeamMemory, LeafSearch, Steps, TreePath};
 
@@ -97,13 +97,24 @@ enum Cells {
 /// What was built.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct PartitionStats {
-    /// Cells by kind, with the bytes of the nodes as they are kept and of the contents. Of a grid:
-    /// voxels, at depth 0.
+    /// Cells by kind, with the bytes of the nodes (or the hash table, or the voxels) as they are kept
+    /// and of the contents. Of a grid: voxels, at depth 0.
     pub cells: CellTreeStats,
     /// The hash table, if there is one.
     pub lvsi: Option<LvsiStats>,
     /// Voxels on each axis, of a grid.
     pub resolution: Option<[u32; 3]>,
+}
+
+/// A leaf of an octree, or a voxel of a grid.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Leaf {
+    /// Depth and indices; of a voxel, depth 0 and its indices in the grid.
+    pub key: CellKey,
+    /// The cell itself, without the margin of its contents.
+    pub bounds: Aabb,
+    /// Empty or occupied.
+    pub node: Node,
 }
 
 /// Working memory of a walk.
@@ -126,7 +137,8 @@ impl WalkMemory {
 impl Partition {
     /// Divides the space around `bounds`; returns the contents of the occupied cells too.
     ///
-    /// A grid is refined as far as `criteria` give memory. Works inside the current thread pool; the
+    /// A grid is refined as far as `criteria` give memory. `table` says how large a hash table is,
+    /// where there is one. Works inside the current thread pool; the
     /// result does not depend on it. An invalid combination ([`Division::objection`]) is built as its
     /// nearest valid one.
     pub fn build<S: Subdivide>(
@@ -135,10 +147,12 @@ impl Partition {
         subdivide: &S,
         division: Division,
         criteria: &Criteria,
+        table: LvsiTable,
     ) -> (Self, Vec<S::Content>) {
         match division {
             Division::Octree(encoding, traversal) => {
-                Self::octree(bounds, content, subdivide, (encoding, traversal), criteria)
+                let how = (encoding, traversal, table);
+                Self::octree(bounds, content, subdivide, how, criteria)
             }
             Division::Grid(resolution) => {
                 Self::grid(bounds, content, subdivide, resolution, criteria)
@@ -150,7 +164,7 @@ impl Partition {
         bounds: &Aabb,
         content: S::Content,
         subdivide: &S,
-        (encoding, traversal): (Encoding, Traversal),
+        (encoding, traversal, size): (Encoding, Traversal, LvsiTable),
         criteria: &Criteria,
     ) -> (Self, Vec<S::Content>) {
         let mut criteria = *criteria;
@@ -170,9 +184,13 @@ impl Partition {
             (Encoding::Tree, Traversal::FujimotoIwata) => Cells::FujimotoIwata(tree),
             (Encoding::Tree, Traversal::Sung) => Cells::Sung(tree),
             (Encoding::Lvsi(store), _) => {
-                let table = Lvsi::new(&tree, store, TableSize::Prime);
+                let table = Lvsi::new(&tree, store, size);
                 let lvsi = table.stats();
                 stats.cells.bytes = stats.cells.bytes - tree.node_bytes() + lvsi.bytes;
+                stats.cells.node_bytes = lvsi.bytes;
+                // Tree and table are there together for a while.
+                let both = stats.cells.bytes + tree.node_bytes();
+                stats.cells.peak_bytes = stats.cells.peak_bytes.max(both);
                 stats.lvsi = Some(lvsi);
                 Cells::Lvsi(table)
             }
@@ -205,19 +223,33 @@ impl Partition {
             Some(n) => [n.clamp(1, Grid::MAX_RESOLUTION); 3],
             None => Grid::resolution_for(&bounds, parts, limit),
         };
-        let (grid, contents) = Grid::build(bounds, content, subdivide, resolution);
-        let held: u64 = contents.iter().map(|c| subdivide.bytes(c)).sum();
-        let voxels = resolution.iter().map(|n| u64::from(*n)).product::<u64>();
-        let stats = PartitionStats {
+        let (grid, contents) = Grid::build(
+            bounds,
+            content,
+            subdivide,
+            resolution,
+            criteria.memory_limit,
+        );
+        let mut stats = PartitionStats {
             cells: CellTreeStats {
-                empty: voxels - grid.occupied(),
-                occupied: grid.occupied(),
-                bytes: grid.bytes() + held,
+                bytes: grid.bytes(),
+                node_bytes: grid.bytes(),
+                peak_bytes: grid.peak_bytes(),
+                stopped_by_memory: grid.resolution() != resolution,
                 ..CellTreeStats::default()
             },
-            resolution: Some(resolution),
+            resolution: Some(grid.resolution()),
             ..PartitionStats::default()
         };
+        for content in &contents {
+            stats.cells.bytes += subdivide.bytes(content);
+            if let crate::Cell::Occupied { parts, .. } = subdivide.describe(content) {
+                stats.cells.count_leaf(0, Some(parts));
+            }
+        }
+        let voxels: u64 = grid.resolution().into_iter().map(u64::from).product();
+        stats.cells.empty = voxels - grid.occupied();
+        stats.cells.empty_by_depth = vec![stats.cells.empty];
         let partition = Self {
             bounds,
             cells: Cells::Grid(grid),
@@ -247,6 +279,28 @@ impl Partition {
             | Cells::Sung(tree) => Box::new(tree.words()),
             Cells::Lvsi(table) => Box::new(table.words()),
             Cells::Grid(grid) => Box::new(grid.words()),
+        }
+    }
+
+    fn leaf(&self, key: CellKey, node: Node) -> Leaf {
+        let bounds = key.bounds(&self.bounds);
+        Leaf { key, bounds, node }
+    }
+
+    /// Visits the leaves, or voxels: of a hash table, those it stores.
+    pub fn visit_leaves(&self, mut visit: impl FnMut(Leaf)) {
+        match &self.cells {
+            Cells::Ordered(tree)
+            | Cells::FujimotoIwata(tree)
+            | Cells::Sung(tree)
+            | Cells::Beam(tree) => {
+                tree.visit_leaves(|key, node| visit(self.leaf(key, node)));
+            }
+            Cells::Lvsi(table) => table.visit_leaves(|key, node| visit(self.leaf(key, node))),
+            Cells::Grid(grid) => grid.visit_voxels(|index, bounds, node| {
+                let key = CellKey { depth: 0, index };
+                visit(Leaf { key, bounds, node });
+            }),
         }
     }
 

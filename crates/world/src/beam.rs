@@ -45,6 +45,11 @@ pub(crate) struct Runs {
 }
 
 impl World {
+    /// Whether neighbouring rays travel together.
+    pub(crate) fn has_beams(&self) -> bool {
+        self.solids.has_beams() || self.sheets.triangles().has_beams()
+    }
+
     /// Gives every query's line to `answer`, with its place in the slice: those of a run one after the
     /// other when it has entered the cells as a beam. What that cost is divided evenly. A query that is
     /// no ray is left out.
@@ -93,7 +98,11 @@ impl World {
             rays.clear();
             let part = |line: &Line| (line.ray, Interval::new(line.origin, line.end));
             rays.extend(lines.iter().map(part));
-            let shared = self.solids.enter(rays, scratch);
+            let mut shared = self.solids.enter(rays, scratch);
+            let triangles = self.sheets.triangles();
+            let steps = triangles.enter(rays, &mut scratch.triangles);
+            shared.cells += steps.cells;
+            shared.lookups += steps.lookups;
             for (place, index) in indices.iter().enumerate() {
                 *account.of(*index) += shared.share(place, indices.len());
             }
@@ -102,6 +111,7 @@ impl World {
             answer(*index, line, scratch, account.of(*index));
         }
         Solids::leave(scratch);
+        scratch.triangles.leave();
         indices.clear();
         lines.clear();
     }

@@ -8,6 +8,7 @@ mod batch;
 mod beam;
 mod chords;
 mod faces;
+mod figures;
 mod interact;
 mod line;
 mod method;
@@ -21,13 +22,15 @@ mod world;
 
 pub use batch::{Batch, BatchError, Lists, RayRow, row_query};
 pub use chords::{Chord, ChordEnd, Overlaps};
+pub use figures::{CellsOf, MemoryStats, WorldCell};
 pub use method::{Method, MethodError};
 pub use query::{Counters, Departure, Hit, RayQuery, Region, SurfaceHit};
 pub use surfaces::{NearCoincidence, SurfaceReport};
 pub use world::{World, WorldConfig, WorldError, WorldStats};
 
 pub use octray_geometry::Membership;
+pub use octray_geometry::mesh::TriangleMarks;
 pub use octray_tree::{
-    CellTreeStats, Criteria, Division, Encoding, LvsiStore, PartitionStats, Traversal,
-    WideTreeConfig, WideTreeError, WideTreeStats,
+    CellTreeStats, Criteria, Division, Encoding, LvsiStats, LvsiStore, LvsiTable, PartitionStats,
+    TableSize, Tally, Traversal, WideTreeConfig, WideTreeError, WideTreeStats,
 };

@@ -57,7 +57,7 @@ impl World {
     ) {
         hits.clear();
         self.scratch.with(|scratch| {
-            if self.solids.has_beams() {
+            if self.has_beams() {
                 hits.resize(queries.len(), Hit::MISS);
                 self.answer_in_beams(
                     queries,
@@ -109,7 +109,7 @@ impl World {
     ) {
         blocked.clear();
         self.scratch.with(|scratch| {
-            if self.solids.has_beams() {
+            if self.has_beams() {
                 blocked.resize(queries.len(), false);
                 self.answer_in_beams(
                     queries,

@@ -4,16 +4,18 @@ use std::cell::Cell;
 use std::sync::{Arc, Mutex, PoisonError};
 
 use octray_geometry::FaceId;
-use octray_geometry::mesh::MeshError;
+use octray_geometry::mesh::{MeshError, TriangleMarks};
 use octray_math::Aabb;
 use octray_scene::{Scene, Shape};
-use octray_tree::{Criteria, PartitionStats, WideTreeConfig, WideTreeError, WideTreeStats};
+use octray_tree::{
+    Criteria, LvsiTable, PartitionStats, Tally, WideTreeConfig, WideTreeError, WideTreeStats,
+};
 use thiserror::Error;
 
 use crate::line::{Line, Place};
 use crate::sheets::{SheetHit, Sheets};
 use crate::solids::{Interface, Scratch, Solids};
-use crate::{Counters, Hit, Method, RayQuery, Region};
+use crate::{Counters, Hit, MemoryStats, Method, RayQuery, Region};
 
 /// How to prepare a world.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -22,6 +24,8 @@ pub struct WorldConfig {
     pub method: Method,
     /// When to divide cells.
     pub criteria: Criteria,
+    /// How large a hash table of cells is.
+    pub table: LvsiTable,
     /// How to build the octrees over triangles.
     pub triangles: WideTreeConfig,
 }
@@ -72,8 +76,16 @@ pub struct WorldStats {
     pub triangles: usize,
     /// The cells over the solids.
     pub cells: Option<PartitionStats>,
-    /// The octree over the triangles of sheets.
+    /// How many objects the occupied cells over solids hold.
+    pub objects_per_leaf: Tally,
+    /// Memory by part.
+    pub memory: MemoryStats,
+    /// The octree with wide nodes over the triangles of sheets.
     pub triangle_tree: Option<WideTreeStats>,
+    /// The cells over the triangles of sheets.
+    pub triangle_cells: Option<PartitionStats>,
+    /// What decided which triangles those cells list, and how many they do.
+    pub triangle_marks: Option<TriangleMarks>,
 }
 
 /// Working memory is handed from query to query instead of being made anew.
@@ -98,6 +110,7 @@ impl World {
     /// See [`WorldError`].
     pub fn prepare(scene: Arc<Scene>, config: &WorldConfig) -> Result<Self, WorldError> {
         check_face_count(&scene)?;
+        // Of mesh operands; see `Method`.
         let triangles = match config.method {
             Method::Brute => None,
             _ => Some(&config.triangles),
@@ -105,7 +118,7 @@ impl World {
         let place = Place::new(&scene);
         let solids = Solids::prepare(&scene, &place.frame, config, triangles)
             .map_err(|(object, error)| WorldError::Mesh { object, error })?;
-        let sheets = Sheets::prepare(&scene, &place.frame, solids.face_count(), triangles)?;
+        let sheets = Sheets::prepare(&scene, &place.frame, solids.face_count(), config)?;
         let opaque = scene
             .materials()
             .iter()
@@ -143,14 +156,19 @@ impl World {
     /// Figures about what was built.
     #[must_use]
     pub fn stats(&self) -> WorldStats {
+        let triangle_cells = self.sheets.triangles().cell_stats();
         WorldStats {
             objects: self.scene.objects().len(),
             surfaces: self.solids.surface_count(),
             merged_surfaces: self.solids.merged_surfaces(),
             faces: self.solids.face_count() as usize + self.sheets.triangle_count(),
             triangles: self.sheets.triangle_count(),
-            cells: self.solids.partition_stats().cloned(),
+            cells: self.solids.partition().map(|cells| cells.stats().clone()),
+            objects_per_leaf: self.objects_per_leaf(),
+            memory: self.memory(),
             triangle_tree: self.sheets.triangles().tree_stats().copied(),
+            triangle_cells: triangle_cells.map(|(cells, _)| cells.clone()),
+            triangle_marks: triangle_cells.map(|(_, marks)| *marks),
         }
     }
 
@@ -213,14 +231,19 @@ impl World {
                 limit_of(&best)
             });
         let mut sheet: Option<SheetHit> = None;
-        self.sheets
-            .visit_line(line, limit_of(&best), counters, |found| {
+        self.sheets.visit_line(
+            line,
+            limit_of(&best),
+            &mut scratch.triangles,
+            counters,
+            |found| {
                 let known = sheet.map_or(best, |hit| Some(Interface::of_sheet(&hit)));
                 if nearer(found.s, found.face, &known) {
                     sheet = Some(*found);
                 }
                 sheet.map_or(limit_of(&best), |hit| hit.s)
-            });
+            },
+        );
         if let Some(hit) = sheet {
             // Which space a sheet stands in matters only where light bends or fades.
             let region = if self.has_transparency() {
@@ -269,10 +292,13 @@ impl World {
                 f64::INFINITY
             }
         };
-        self.sheets
-            .visit_line(line, f64::INFINITY, counters, |hit| {
-                visit(hit.s, hit.face, hit.entering)
-            });
+        self.sheets.visit_line(
+            line,
+            f64::INFINITY,
+            &mut scratch.triangles,
+            counters,
+            |hit| visit(hit.s, hit.face, hit.entering),
+        );
         if !found.get() {
             self.solids
                 .sweep_line(line, f64::INFINITY, scratch, counters, |change| {
@@ -325,11 +351,16 @@ impl World {
                 f64::INFINITY
             });
         let first_sheet = found.len();
-        self.sheets
-            .visit_line(line, f64::INFINITY, counters, |hit| {
+        self.sheets.visit_line(
+            line,
+            f64::INFINITY,
+            &mut scratch.triangles,
+            counters,
+            |hit| {
                 found.push(Interface::of_sheet(hit));
                 f64::INFINITY
-            });
+            },
+        );
         for sheet in &mut found[first_sheet..] {
             let region = self.solids.region_at(line, sheet.s, scratch, counters);
             (sheet.from, sheet.to) = (region, region);

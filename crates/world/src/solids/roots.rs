@@ -12,6 +12,7 @@ use crate::beam::Runs;
 use crate::chords::{Chord, ChordScratch};
 use crate::line::Line;
 use octray_geometry::FaceId;
+use octray_geometry::mesh::SearchMemory;
 use octray_tree::{WalkCost, WalkMemory};
 
 /// A crossing of a surface, in the line's parameter.
@@ -73,6 +74,8 @@ pub(crate) struct Scratch {
     pub(super) inside_after: Vec<bool>,
     pub(super) walk: WalkMemory,
     pub(crate) runs: Runs,
+    /// For the triangles of sheets.
+    pub(crate) triangles: SearchMemory,
     pub(super) volume_hits: VolumeHits,
     pub(crate) chords: ChordScratch,
     /// Chords that are only counted.
