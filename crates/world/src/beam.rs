@@ -11,7 +11,8 @@ use crate::{Counters, RayQuery, World};
 const RUN: usize = 64;
 /// Runs that are gathered at a time: rays to several lamps alternate.
 const RUNS: usize = 4;
-/// How far the directions of a run may be apart, by their components divided by that on the main axis.
+/// How far the directions of a run may be apart, by their components divided by that on the main
+/// axis.
 const SPREAD: f64 = 0.125;
 
 /// Rays that will travel together.
@@ -50,9 +51,9 @@ impl World {
         self.solids.has_beams() || self.sheets.triangles().has_beams()
     }
 
-    /// Gives every query's line to `answer`, with its place in the slice: those of a run one after the
-    /// other when it has entered the cells as a beam. What that cost is divided evenly. A query that is
-    /// no ray is left out.
+    /// Gives every query's line to `answer`, with its place in the slice: those of a run one after
+    /// the other when it has entered the cells as a beam. What that cost is divided evenly. A query
+    /// that is no ray is left out.
     pub(crate) fn answer_in_beams(
         &self,
         queries: &[RayQuery],

@@ -120,7 +120,8 @@ impl TriangleCells {
         self.partition.has_beams()
     }
 
-    /// See [`Partition::enter`]. Where rounding is too large for one of the rays, each walks by itself.
+    /// See [`Partition::enter`]. Where rounding is too large for one of the rays, each walks by
+    /// itself.
     pub(super) fn enter(&self, rays: &[(Ray, Interval)], memory: &mut SearchMemory) -> Steps {
         memory.leave();
         if rays.iter().all(|(ray, _)| self.can_walk(ray)) {

@@ -173,8 +173,9 @@ impl TriangleTree {
         matches!(&self.index, Index::Cells(cells) if cells.has_beams())
     }
 
-    /// Takes a run of rays, each with the part of it that counts, through the upper cells together; until
-    /// [`SearchMemory::leave`], only these may be searched with this memory. Returns what it cost.
+    /// Takes a run of rays, each with the part of it that counts, through the upper cells together;
+    /// until [`SearchMemory::leave`], only these may be searched with this memory. Returns what it
+    /// cost.
     pub fn enter(&self, rays: &[(Ray, Interval)], memory: &mut SearchMemory) -> Steps {
         match &self.index {
             Index::Cells(cells) => cells.enter(rays, memory),
