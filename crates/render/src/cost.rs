@@ -40,7 +40,8 @@ impl Ledger {
         self.film
     }
 
-    /// [`World::closest`], on the account of the pixels of `states`; returns what all cost together.
+    /// [`World::closest`], on the account of the pixels of `states`; returns what all cost
+    /// together.
     pub(crate) fn closest<'a, S: OfPixel + 'a>(
         &mut self,
         world: &World,

@@ -24,6 +24,9 @@ pub struct Tile {
     pub refines: bool,
 }
 
+/// Pixels, of those that a pass renders, along the edge of a block of neighbours.
+const BLOCK: u32 = 8;
+
 impl Tile {
     /// All tiles of a film of this size: squares of `edge * stride` pixels, cut at the border.
     #[must_use]
@@ -45,17 +48,25 @@ impl Tile {
         tiles
     }
 
-    /// Its pixels as coordinates in the film, in rows from the top.
+    /// Its pixels as coordinates in the film: square blocks of neighbours one after the other, whose
+    /// rays travel together.
     pub fn pixels(&self) -> impl Iterator<Item = (u32, u32)> + use<> {
         let tile = *self;
         let step = tile.stride as usize;
         let coarser = 2 * tile.stride;
-        (tile.y..tile.y + tile.height)
-            .step_by(step)
-            .flat_map(move |y| {
-                (tile.x..tile.x + tile.width)
-                    .step_by(step)
-                    .map(move |x| (x, y))
+        let block = BLOCK * tile.stride;
+        let along = move |start: u32, length: u32| (start..start + length).step_by(step);
+        let blocks = |start: u32, length: u32| {
+            let end = start + length;
+            (start..end)
+                .step_by(block as usize)
+                .map(move |at| (at, block.min(end - at)))
+        };
+        let columns = blocks(tile.x, tile.width);
+        blocks(tile.y, tile.height)
+            .flat_map(move |row| columns.clone().map(move |column| (column, row)))
+            .flat_map(move |((x, width), (y, height))| {
+                along(y, height).flat_map(move |y| along(x, width).map(move |x| (x, y)))
             })
             .filter(move |(x, y)| {
                 !(tile.refines && x.is_multiple_of(coarser) && y.is_multiple_of(coarser))

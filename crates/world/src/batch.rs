@@ -11,6 +11,7 @@ use octray_math::{DVec3, Ray};
 use rayon::prelude::*;
 use thiserror::Error;
 
+use crate::slice::Account;
 use crate::solids::Scratch;
 use crate::{Chord, ChordEnd, Counters, Hit, Overlaps, RayQuery, Region, World};
 
@@ -99,6 +100,11 @@ impl Batch<'_> {
     /// # Errors
     /// See [`BatchError`].
     pub fn closest(&self, rays: &[RayRow]) -> Result<Vec<Hit>, BatchError> {
+        if self.world.has_beams() {
+            return self.in_beams(rays, f64::INFINITY, |queries, hits| {
+                self.world.closest(queries, hits, &mut Counters::default());
+            });
+        }
         self.each(rays.len(), |ray, scratch| {
             let query = whole_query(&rays[ray]);
             self.world
@@ -127,6 +133,13 @@ impl Batch<'_> {
     /// # Errors
     /// See [`BatchError`].
     pub fn meets_any(&self, rays: &[RayRow], t_max: f64) -> Result<Vec<bool>, BatchError> {
+        if self.world.has_beams() {
+            return self.in_beams(rays, t_max, |queries, blocked| {
+                let account = Account::Sum(&mut Counters::default());
+                self.world
+                    .meets_on_account(queries, &|_| true, blocked, account);
+            });
+        }
         self.each(rays.len(), |ray, scratch| {
             let query = row_query(&rays[ray], t_max);
             self.world
@@ -214,6 +227,24 @@ impl Batch<'_> {
             self.world
                 .region_of(points[point].into(), scratch, &mut Counters::default())
         })
+    }
+
+    /// What `answer` finds for slices of the rays, which travel together.
+    fn in_beams<T: Send>(
+        &self,
+        rays: &[RayRow],
+        t_max: f64,
+        answer: impl Fn(&[RayQuery], &mut Vec<T>) + Sync,
+    ) -> Result<Vec<T>, BatchError> {
+        let slices = self.slices(rays.len(), |slice, _| {
+            let queries = rays[slice].iter().map(|row| row_query(row, t_max));
+            let mut answers = Vec::new();
+            answer(&queries.collect::<Vec<_>>(), &mut answers);
+            answers
+        })?;
+        let mut all = room(rays.len())?;
+        all.extend(slices.into_iter().flatten());
+        Ok(all)
     }
 
     /// `answer` for every index.

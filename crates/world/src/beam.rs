@@ -4,70 +4,116 @@ use octray_math::{Interval, Ray};
 
 use crate::line::Line;
 use crate::slice::Account;
-use crate::solids::Scratch;
+use crate::solids::{Scratch, Solids};
 use crate::{Counters, RayQuery, World};
 
 /// Rays that travel together, at most.
 const RUN: usize = 64;
-/// How far the directions of a run may be apart, by their components divided by that on the main axis.
+/// Runs that are gathered at a time: rays to several lamps alternate.
+const RUNS: usize = 4;
+/// How far the directions of a run may be apart, by their components divided by that on the main
+/// axis.
 const SPREAD: f64 = 0.125;
 
-/// Whether a line goes about where another one does.
-fn goes_along(line: &Line, first: &Line) -> bool {
-    let (a, b) = (line.ray.direction, first.ray.direction);
-    let size = b.abs();
-    let main = (0..3).fold(
-        0,
-        |main, axis| if size[axis] > size[main] { axis } else { main },
-    );
-    let apart = (a * (b[main] / a[main]) - b).abs().max_element();
-    a[main] * b[main] > 0.0 && (a * b).min_element() >= 0.0 && apart <= SPREAD * size[main]
+/// Rays that will travel together.
+#[derive(Debug, Default)]
+struct Run {
+    /// Where in the slice they stand.
+    indices: Vec<usize>,
+    lines: Vec<Line>,
+}
+
+impl Run {
+    /// Whether a line may join: it goes about where the first one goes.
+    fn takes(&self, line: &Line) -> bool {
+        let Some(first) = self.lines.first() else {
+            return true;
+        };
+        let (a, b) = (line.ray.direction, first.ray.direction);
+        let size = b.abs();
+        let larger = |x: usize, y: usize| if size[y] > size[x] { y } else { x };
+        let main = larger(larger(0, 1), 2);
+        let apart = (a * (b[main] / a[main]) - b).abs().max_element();
+        a[main] * b[main] > 0.0 && (a * b).min_element() >= 0.0 && apart <= SPREAD * size[main]
+    }
+}
+
+/// Working memory of slices in beams.
+#[derive(Debug, Default)]
+pub(crate) struct Runs {
+    runs: [Run; RUNS],
+    rays: Vec<(Ray, Interval)>,
 }
 
 impl World {
-    /// Gives every query's line (`None` for one that is none) to `answer`, in order; those of a run
-    /// when it has entered the cells as a beam. What that cost is divided evenly.
+    /// Whether neighbouring rays travel together.
+    pub(crate) fn has_beams(&self) -> bool {
+        self.solids.has_beams() || self.sheets.triangles().has_beams()
+    }
+
+    /// Gives every query's line to `answer`, with its place in the slice: those of a run one after
+    /// the other when it has entered the cells as a beam. What that cost is divided evenly. A query
+    /// that is no ray is left out.
     pub(crate) fn answer_in_beams(
         &self,
         queries: &[RayQuery],
         scratch: &mut Scratch,
         account: &mut Account<'_>,
-        mut answer: impl FnMut(Option<Line>, &mut Scratch, &mut Counters),
+        mut answer: impl FnMut(usize, &Line, &mut Scratch, &mut Counters),
     ) {
-        let mut lines: Vec<Option<Line>> = Vec::with_capacity(RUN);
-        let mut rays: Vec<(Ray, Interval)> = Vec::with_capacity(RUN);
-        let mut start = 0;
-        let mut next = queries.first().and_then(|query| self.line(query, false));
-        while start < queries.len() {
-            lines.clear();
-            rays.clear();
-            let first = next;
-            // The line that ends the run begins the next one.
-            loop {
-                lines.push(next);
-                rays.extend(next.map(|l| (l.ray, Interval::new(l.origin, l.end))));
-                let Some(query) = queries.get(start + lines.len()) else {
-                    break;
-                };
-                next = self.line(query, false);
-                let is_along = first.zip(next).is_some_and(|(a, b)| goes_along(&b, &a));
-                if lines.len() == RUN || !is_along {
-                    break;
-                }
-            }
-            let shared = if rays.len() > 1 {
-                self.solids.enter(&rays, scratch)
-            } else {
-                Counters::default()
+        let mut memory = std::mem::take(&mut scratch.runs);
+        let Runs { runs, rays } = &mut memory;
+        // The run that a line was added to last stands first.
+        for (index, query) in queries.iter().enumerate() {
+            account.of(index).rays += 1;
+            let Some(line) = self.line(query, false) else {
+                continue;
             };
-            for (index, line) in lines.iter().enumerate() {
-                let counters = account.of(start + index);
-                counters.rays += 1;
-                *counters += shared.share(index, lines.len());
-                answer(*line, scratch, counters);
+            let place = runs.iter().position(|run| run.takes(&line));
+            // None takes it: the one that has waited longest goes.
+            let place = place.unwrap_or(RUNS - 1);
+            if !runs[place].takes(&line) || runs[place].lines.len() == RUN {
+                self.answer_run(&mut runs[place], rays, scratch, account, &mut answer);
             }
-            self.solids.leave(scratch);
-            start += lines.len();
+            runs[place].indices.push(index);
+            runs[place].lines.push(line);
+            runs[..=place].rotate_right(1);
         }
+        for run in runs {
+            self.answer_run(run, rays, scratch, account, &mut answer);
+        }
+        scratch.runs = memory;
+    }
+
+    /// Answers the lines of a run, which is empty then.
+    fn answer_run(
+        &self,
+        run: &mut Run,
+        rays: &mut Vec<(Ray, Interval)>,
+        scratch: &mut Scratch,
+        account: &mut Account<'_>,
+        answer: &mut impl FnMut(usize, &Line, &mut Scratch, &mut Counters),
+    ) {
+        let Run { indices, lines } = run;
+        if lines.len() > 1 {
+            rays.clear();
+            let part = |line: &Line| (line.ray, Interval::new(line.origin, line.end));
+            rays.extend(lines.iter().map(part));
+            let mut shared = self.solids.enter(rays, scratch);
+            let triangles = self.sheets.triangles();
+            let steps = triangles.enter(rays, &mut scratch.triangles);
+            shared.cells += steps.cells;
+            shared.lookups += steps.lookups;
+            for (place, index) in indices.iter().enumerate() {
+                *account.of(*index) += shared.share(place, indices.len());
+            }
+        }
+        for (index, line) in indices.iter().zip(lines.iter()) {
+            answer(*index, line, scratch, account.of(*index));
+        }
+        Solids::leave(scratch);
+        scratch.triangles.leave();
+        indices.clear();
+        lines.clear();
     }
 }

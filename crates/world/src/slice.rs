@@ -1,6 +1,8 @@
 //! Slices of rays: the nearest surface on each, or whether light comes through; what they cost, all
 //! together or one by one.
 
+use octray_geometry::FaceId;
+
 use crate::{Counters, Hit, RayQuery, World};
 
 /// Where costs are counted.
@@ -55,12 +57,16 @@ impl World {
     ) {
         hits.clear();
         self.scratch.with(|scratch| {
-            if self.solids.has_beams() {
-                self.answer_in_beams(queries, scratch, &mut account, |line, scratch, counters| {
-                    hits.push(line.map_or(Hit::MISS, |line| {
-                        self.closest_on_line(line, scratch, counters)
-                    }));
-                });
+            if self.has_beams() {
+                hits.resize(queries.len(), Hit::MISS);
+                self.answer_in_beams(
+                    queries,
+                    scratch,
+                    &mut account,
+                    |index, line, scratch, counters| {
+                        hits[index] = self.closest_on_line(*line, scratch, counters);
+                    },
+                );
                 return;
             }
             hits.extend(queries.iter().enumerate().map(|(index, query)| {
@@ -74,7 +80,12 @@ impl World {
     /// Whether a surface that no light passes, of an object that casts shadows, lies on each ray;
     /// `blocked` is cleared and gets one answer per query.
     pub fn occluded(&self, queries: &[RayQuery], blocked: &mut Vec<bool>, counters: &mut Counters) {
-        self.occluded_on_account(queries, blocked, Account::Sum(counters));
+        self.meets_on_account(
+            queries,
+            &|face| self.blocks(face),
+            blocked,
+            Account::Sum(counters),
+        );
     }
 
     /// The same with the costs of each ray in `costs`, which is cleared first.
@@ -84,32 +95,36 @@ impl World {
         blocked: &mut Vec<bool>,
         costs: &mut Vec<Counters>,
     ) {
-        self.occluded_on_account(queries, blocked, Account::each(costs, queries.len()));
+        let account = Account::each(costs, queries.len());
+        self.meets_on_account(queries, &|face| self.blocks(face), blocked, account);
     }
 
-    fn occluded_on_account(
+    /// Whether any of the faces that count lies on each ray.
+    pub(crate) fn meets_on_account(
         &self,
         queries: &[RayQuery],
+        counts: &impl Fn(FaceId) -> bool,
         blocked: &mut Vec<bool>,
         mut account: Account<'_>,
     ) {
         blocked.clear();
-        let stops = |face| self.blocks(face);
         self.scratch.with(|scratch| {
-            if self.solids.has_beams() {
-                self.answer_in_beams(queries, scratch, &mut account, |line, scratch, counters| {
-                    blocked.push(
-                        line.is_some_and(|line| {
-                            self.line_meets_any(&line, &stops, scratch, counters)
-                        }),
-                    );
-                });
+            if self.has_beams() {
+                blocked.resize(queries.len(), false);
+                self.answer_in_beams(
+                    queries,
+                    scratch,
+                    &mut account,
+                    |index, line, scratch, counters| {
+                        blocked[index] = self.line_meets_any(line, counts, scratch, counters);
+                    },
+                );
                 return;
             }
             blocked.extend(queries.iter().enumerate().map(|(index, query)| {
                 let counters = account.of(index);
                 counters.rays += 1;
-                self.meets_any(query, &stops, scratch, counters)
+                self.meets_any(query, counts, scratch, counters)
             }));
         });
     }

@@ -21,10 +21,14 @@ fn methods() -> Vec<Method> {
 struct Answers {
     closest: Vec<Hit>,
     occluded: Vec<bool>,
+    /// Whether the surfaces that were met see a lamp at a point.
+    dark: Vec<bool>,
     crossings: Vec<Vec<Hit>>,
     chords: Vec<Vec<Chord>>,
     regions: Vec<Region>,
 }
+
+const LAMP: DVec3 = DVec3::new(3.0, -2.0, 4.0);
 
 fn answers(world: &World, rays: &[Ray]) -> Answers {
     let mut counters = Counters::default();
@@ -46,6 +50,22 @@ fn answers(world: &World, rays: &[Ray]) -> Answers {
         })
         .collect();
     world.occluded(&departing, &mut occluded, &mut counters);
+    // To a lamp, on whichever side of the surface it is; `departing` goes along the normal.
+    let to_lamp: Vec<RayQuery> = departing
+        .iter()
+        .map(|query| {
+            let ray = Ray::new(query.ray.origin, LAMP - query.ray.origin);
+            let mut departure = query.departure;
+            departure.outward = ray.direction.dot(query.ray.direction) > 0.0;
+            RayQuery {
+                ray,
+                t_max: 1.0,
+                departure,
+            }
+        })
+        .collect();
+    let mut dark = Vec::new();
+    world.occluded(&to_lamp, &mut dark, &mut counters);
     let mut next = Vec::new();
     world.closest(&departing, &mut next, &mut counters);
     closest.extend(next);
@@ -68,6 +88,7 @@ fn answers(world: &World, rays: &[Ray]) -> Answers {
     Answers {
         closest,
         occluded,
+        dark,
         crossings,
         chords,
         regions,
@@ -78,7 +99,18 @@ fn answers(world: &World, rays: &[Ray]) -> Answers {
 fn conform(solids: &[(Solid, i32)], rays: &[Ray]) -> Answers {
     let expected = answers(&world(solids, Method::Brute), rays);
     for method in methods() {
-        assert_eq!(answers(&world(solids, method), rays), expected, "{method}");
+        let found = answers(&world(solids, method), rays);
+        // One by one: all answers together would fill pages.
+        for (what, same) in [
+            ("closest", found.closest == expected.closest),
+            ("occluded", found.occluded == expected.occluded),
+            ("dark", found.dark == expected.dark),
+            ("crossings", found.crossings == expected.crossings),
+            ("chords", found.chords == expected.chords),
+            ("regions", found.regions == expected.regions),
+        ] {
+            assert!(same, "{what} by {method}");
+        }
     }
     expected
 }
@@ -102,6 +134,84 @@ proptest! {
                 prop_assert_eq!(found.unwrap_or(true), found.is_some() || !holds.iter().any(|h| h.0));
             }
         }
+    }
+}
+
+/// Rays that travel together: from one point, to one point, parallel, along an axis.
+fn neighbours(from: DVec3, to: DVec3, spread: f64) -> Vec<Ray> {
+    let grid = || (0..40).map(|i| (f64::from(i % 8) - 3.0, f64::from(i / 8) - 2.0));
+    let aside = |(i, j): (f64, f64)| DVec3::new(i, j, i - j) * spread;
+    let eye = grid().map(|at| Ray::new(from, to - from + aside(at)));
+    let lamp = grid().map(|at| Ray::new(from + aside(at), to - from - aside(at)));
+    let parallel = grid().map(|at| Ray::new(from + aside(at), to - from));
+    let axis = grid().map(|at| Ray::new(from + aside(at), DVec3::Y * -from.y));
+    eye.chain(lamp).chain(parallel).chain(axis).collect()
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(10))]
+
+    #[test]
+    fn neighbouring_rays_are_answered_as_by_brute_force(
+        models in proptest::collection::vec((model(), 0..2i32), 1..6),
+        from in point(4.0), to in point(1.0), spread in prop_oneof![Just(0.0), 1e-6..0.1f64],
+    ) {
+        let solids: Vec<(Solid, i32)> = models.iter().map(|(m, p)| (m.solid.clone(), *p)).collect();
+        conform(&solids, &neighbours(from, to, spread));
+    }
+
+    #[test]
+    fn how_rays_are_sliced_does_not_show(
+        models in proptest::collection::vec((model(), 0..2i32), 1..6),
+        from in point(4.0), to in point(1.0), spread in 1e-6..0.1f64, length in 1..70usize,
+    ) {
+        let solids: Vec<(Solid, i32)> = models.iter().map(|(m, p)| (m.solid.clone(), *p)).collect();
+        let beams = "octree:tree:beam".parse().expect("a method");
+        let world = world(&solids, beams);
+        let mut rays = neighbours(from, to, spread);
+        // Rays to two lamps by turns, one that is none, and one that goes elsewhere.
+        let turns = |i: usize| [rays[i], rays[i + 100]];
+        let mut mixed: Vec<Ray> = (0..40).flat_map(turns).collect();
+        mixed.insert(17, Ray::new(from, DVec3::ZERO));
+        mixed.insert(33, Ray::new(to, from));
+        rays.extend(mixed);
+        let queries: Vec<RayQuery> = rays.iter().map(|ray| RayQuery::new(*ray)).collect();
+        let (mut whole, mut part, mut sliced) = (Vec::new(), Vec::new(), Vec::new());
+        let mut counters = Counters::default();
+        world.closest(&queries, &mut whole, &mut counters);
+        for slice in queries.chunks(length) {
+            world.closest(slice, &mut part, &mut Counters::default());
+            sliced.append(&mut part);
+        }
+        prop_assert_eq!(&sliced, &whole);
+        // And what each ray cost adds up.
+        let mut costs = Vec::new();
+        world.closest_with_costs(&queries, &mut part, &mut costs);
+        let mut sum = Counters::default();
+        for cost in &costs {
+            prop_assert_eq!(cost.rays, 1);
+            sum += *cost;
+        }
+        prop_assert_eq!(sum, counters);
+        prop_assert_eq!(&part, &whole);
+        let (mut blocked, mut one_by_one) = (Vec::new(), Vec::new());
+        world.occluded_with_costs(&queries, &mut blocked, &mut costs);
+        for query in &queries {
+            world.occluded(std::slice::from_ref(query), &mut one_by_one, &mut counters);
+            prop_assert_eq!(one_by_one[0], blocked[one_by_one.len() - 1]);
+            blocked.remove(0);
+        }
+        let stop = std::sync::atomic::AtomicBool::new(false);
+        let rows: Vec<[f64; 6]> = rays
+            .iter()
+            .map(|ray| {
+                let (o, d) = (ray.origin, ray.direction);
+                [o.x, o.y, o.z, d.x, d.y, d.z]
+            })
+            .collect();
+        prop_assert_eq!(&world.batch(&stop).closest(&rows), &Ok(whole.clone()));
+        let met: Vec<bool> = whole.iter().map(|hit| !hit.is_miss()).collect();
+        prop_assert_eq!(world.batch(&stop).meets_any(&rows, f64::INFINITY), Ok(met));
     }
 }
 

@@ -4,12 +4,12 @@ use octray_math::DVec3;
 
 use super::Image;
 
-/// What one step (a cell, node or look-up), one surface and one triangle weigh in a heat map, in units
-/// of a surface's time.
+/// What one step (a cell, node or look-up), one surface and one triangle weigh in a heat map, in
+/// units of a surface's time.
 ///
-/// Measured on one core (AMD Zen 3): a step took about 10 ns, a surface 32 ns (least squares over 54
-/// pictures of flakes of balls and drilled plates by ten methods), a triangle 20 ns (meshes by brute
-/// force). What every ray costs anyway, 420 ns with its shading, is in no picture.
+/// Measured on one core (AMD Zen 3): a step took about 10 ns, a surface 32 ns (least squares over
+/// 54 pictures of flakes of balls and drilled plates by ten methods), a triangle 20 ns (meshes by
+/// brute force). What every ray costs anyway, 420 ns with its shading, is in no picture.
 pub const COST_WEIGHTS: DVec3 = DVec3::new(0.3, 1.0, 0.6);
 
 /// The share of the pixels that the colours tell apart; dearer ones all have the brightest.
@@ -53,8 +53,8 @@ impl HeatMap {
 }
 
 /// The colour of a heat from 0 to 1 as display values: black, violet, red, orange, white. In Oklab
-/// (Ottosson 2020) lightness is proportional to the heat and the hue turns evenly by 170 degrees, with as
-/// much chroma as fits everywhere into what displays show.
+/// (Ottosson 2020) lightness is proportional to the heat and the hue turns evenly by 170 degrees,
+/// with as much chroma as fits everywhere into what displays show.
 #[must_use]
 pub fn heat_color(heat: f64) -> DVec3 {
     let lightness = 0.97 * heat;

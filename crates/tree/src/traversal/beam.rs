@@ -1,34 +1,37 @@
 //! Coherence: neighbouring rays go down the tree together.
 //!
-//! A *run* of rays with one main axis and one order of octants is enclosed in a *beam* (Heckbert and
-//! Hanrahan, "Beam tracing polygonal objects", SIGGRAPH 1984). The beam goes down the tree once,
-//! front to back, as far as cells are much larger than its cross-section; what it ends with, its *entry
-//! cells*, is where each ray begins instead of at the root (Reshetov, Soupikov and Hurley,
-//! "Multi-level ray tracing algorithm", SIGGRAPH 2005, for kd-trees and one cell). That a cell is tested once
-//! for a set of rays, and only then for each of them, goes back to Arvo and Kirk ("Fast ray tracing by ray classification",
-//! SIGGRAPH 1987).
+//! A *run* of rays with one main axis and one order of octants is enclosed in a *beam* (Heckbert
+//! and Hanrahan, "Beam tracing polygonal objects", SIGGRAPH 1984). The beam goes down the tree
+//! once, front to back, as far as cells are much larger than its cross-section; what it ends with,
+//! its *entry cells*, is where each ray begins instead of at the root (Reshetov, Soupikov and
+//! Hurley, "Multi-level ray tracing algorithm", SIGGRAPH 2005, for kd-trees and one cell). That a
+//! cell is tested once for a set of rays, and only then for each of them, goes back to Arvo and
+//! Kirk ("Fast ray tracing by ray classification", SIGGRAPH 1987).
 //!
-//! The beam is bounded by four planes. Let `w` be the main axis, on which the rays have no component of
-//! direction less than half their largest, and `u` one of the others. Between two planes `w = from` and
-//! `w = to` that enclose what counts of all the rays, each ray's `u` is a linear function of `w`. The least of linear
-//! functions is concave, so it nowhere falls below the chord between its values at both ends; the greatest is
-//! convex and nowhere rises above its chord. Hence `low(w) <= u(w) <= high(w)` for every ray, whether the rays
-//! start at one point, end at one (a lamp), are parallel or none of these.
+//! The beam is bounded by four planes. Let `w` be the main axis, on which the rays have no
+//! component of direction less than half their largest, and `u` one of the others. Between two
+//! planes `w = from` and `w = to` that enclose what counts of all the rays, each ray's `u` is a
+//! linear function of `w`. The least of linear functions is concave, so it nowhere falls below the
+//! chord between its values at both ends; the greatest is convex and nowhere rises above its chord.
+//! Hence `low(w) <= u(w) <= high(w)` for every ray, whether the rays start at one point, end at one
+//! (a lamp), are parallel or none of these.
 //!
-//! *Invariant:* every cell (grown by half of [`CellTree::CONTENT_MARGIN`]) that a ray of the run meets in its interval lies in
-//! an entry cell, or above it. The beam is tested against cells grown by the whole margin; the other half is a million
-//! times what the bounds are rounded by.
+//! *Invariant:* every cell (grown by half of [`CellTree::CONTENT_MARGIN`]) that a ray of the run
+//! meets in its interval, and that is not empty, is an entry cell, lies in one, or holds some. The
+//! beam is tested against cells grown by the whole margin; the other half is a million times what the bounds are rounded by.
 //!
-//! *Limits:* a run that goes down an axis with some rays and up with others has no order of octants, and a beam as wide as
-//! a quarter of the cube has no use: such rays are walked one by one, from the root.
+//! *Limits:* a run that goes down an axis with some rays and up with others has no order of
+//! octants, and a beam as wide as a quarter of the cube has no use: such rays are walked one by
+//! one, from the root.
 
 use octray_math::{Aabb, Interval, Ray};
 
 use crate::CellTree;
 use crate::cell_tree::{Node, Slabs, Waiting, WalkStack};
 
-/// Cells are divided for the beam while they are larger than this many times its cross-section there.
-const CELL_PER_WIDTH: f64 = 2.0;
+/// Cells are divided for the beam while they are larger than this many times its cross-section
+/// there.
+const CELL_PER_WIDTH: f64 = 1.0;
 /// Beams wider than this share of the cube are given up.
 const WIDEST: f64 = 0.25;
 /// The most entry cells of a beam: from then on the cells that it meets stay as they are.
@@ -40,7 +43,6 @@ pub struct BeamMemory {
     /// Front to back for every ray of the run.
     entries: Vec<Waiting>,
     waiting: Vec<Waiting>,
-    main_axis: usize,
 }
 
 /// The linear function of `w` through two values at the ends of the beam.
@@ -80,7 +82,8 @@ struct Beam {
 }
 
 impl Beam {
-    /// Around what counts of the rays inside a box; `None` if they have no common main axis or order.
+    /// Around what counts of the rays inside a box; `None` if they have no common main axis or
+    /// order.
     fn around(bounds: &Aabb, rays: &[(Ray, Interval)]) -> Option<Self> {
         let (first, _) = rays.first()?;
         let size = first.direction.abs();
@@ -141,8 +144,8 @@ impl Beam {
         })
     }
 
-    /// The beam's largest extent across its main axis in a cube grown by `margin`; `None` if it does
-    /// not meet it.
+    /// The beam's largest extent across its main axis in a cube grown by `margin`; `None` if it
+    /// does not meet it.
     fn width_in(&self, min: octray_math::DVec3, size: f64, margin: f64) -> Option<f64> {
         let axis = self.main_axis;
         let start = self.from.max(min[axis] - margin) - self.from;
@@ -167,15 +170,18 @@ impl Beam {
 
 impl CellTree {
     /// Finds where the rays of a run begin, each with the part of it that counts; returns how many
-    /// cells the beam entered, or `None` if the rays have no beam that is of use: then each is walked
-    /// by itself.
+    /// cells the beam entered, or `None` if the rays have no beam that is of use: then each is
+    /// walked by itself.
     pub fn enter(&self, rays: &[(Ray, Interval)], memory: &mut BeamMemory) -> Option<u64> {
         memory.entries.clear();
         memory.waiting.clear();
         let root_size = self.root().size().x;
         let margin = root_size * Self::CONTENT_MARGIN;
         let beam = Beam::around(&self.root().inflated(margin), rays)?;
-        memory.main_axis = beam.main_axis;
+        if beam.from > beam.to {
+            // All pass by.
+            return Some(0);
+        }
         let mut root = Waiting {
             node: self.root_node().encode(),
             min: self.root().min,
@@ -235,8 +241,8 @@ impl CellTree {
         Some(entered)
     }
 
-    /// [`CellTree::walk`] for a ray of the run that was last entered, or a part of one, from the entry
-    /// cells on.
+    /// [`CellTree::walk`] for a ray of the run that was last entered, or a part of one, from the
+    /// entry cells on.
     pub fn walk_from(
         &self,
         memory: &BeamMemory,
@@ -248,9 +254,10 @@ impl CellTree {
         let root_size = self.root().size().x;
         let slabs = Slabs::new(ray, root_size);
         let mut limit = within.end;
-        // Grown cells overlap: the next one may begin so much earlier than this one.
-        let overlap = 2.0 * Self::CONTENT_MARGIN * root_size;
-        let overlap = overlap / ray.direction[memory.main_axis].abs();
+        // Grown cells overlap: a later one may begin so much before an earlier one.
+        let slowest = ray.direction.abs().to_array().into_iter();
+        let slowest = slowest.filter(|x| *x > 0.0).fold(f64::INFINITY, f64::min);
+        let overlap = 2.0 * Self::CONTENT_MARGIN * root_size / slowest;
         let WalkStack(stack) = stack;
         stack.clear();
         let mut entered = 0;

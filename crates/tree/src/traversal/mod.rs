@@ -1,11 +1,15 @@
 //! Other ways to walk the cells that a line meets than [`crate::CellTree::walk`].
 //!
+//! (`beam` takes neighbouring rays through the upper cells together before they are walked so.)
+//!
 //! All of them visit the same occupied cells in the same order, give or take cells that the line
 //! meets only within [`CellTree::CONTENT_MARGIN`] of their faces.
 //!
 //! [`CellTree::CONTENT_MARGIN`]: crate::CellTree::CONTENT_MARGIN
 
 mod beam;
+#[cfg(test)]
+mod beam_tests;
 mod fujimoto_iwata;
 mod stepper;
 mod sung;

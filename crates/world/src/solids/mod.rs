@@ -107,7 +107,7 @@ impl Solids {
     }
 
     /// The run has been answered.
-    pub(crate) const fn leave(&self, scratch: &mut Scratch) {
+    pub(crate) const fn leave(scratch: &mut Scratch) {
         scratch.walk.leave();
     }
 

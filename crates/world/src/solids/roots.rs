@@ -8,6 +8,7 @@ use super::spans::Toggles;
 use super::sweep::Event;
 use super::volumes::VolumeHits;
 use crate::Counters;
+use crate::beam::Runs;
 use crate::chords::{Chord, ChordScratch};
 use crate::line::Line;
 use octray_geometry::FaceId;
@@ -72,6 +73,7 @@ pub(crate) struct Scratch {
     pub(super) inside: Vec<bool>,
     pub(super) inside_after: Vec<bool>,
     pub(super) walk: WalkMemory,
+    pub(crate) runs: Runs,
     /// For the triangles of sheets.
     pub(crate) triangles: SearchMemory,
     pub(super) volume_hits: VolumeHits,

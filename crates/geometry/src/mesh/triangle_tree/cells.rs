@@ -22,6 +22,7 @@
 //! [`CellTree::CONTENT_MARGIN`]: octray_tree::CellTree::CONTENT_MARGIN
 
 use octray_math::{Aabb, DVec3, Interval, Ray};
+use octray_tree::traversal::Steps;
 use octray_tree::{Criteria, Division, LvsiTable, Partition, PartitionStats};
 
 use super::membership::{Touching, TriangleMarks};
@@ -112,6 +113,22 @@ impl TriangleCells {
         let size = self.partition.bounds().size().max_element();
         ray.origin.abs().max_element() <= REACH * size
             && TAME.contains(&ray.direction.abs().max_element())
+    }
+
+    /// Whether neighbouring rays travel together.
+    pub(super) const fn has_beams(&self) -> bool {
+        self.partition.has_beams()
+    }
+
+    /// See [`Partition::enter`]. Where rounding is too large for one of the rays, each walks by
+    /// itself.
+    pub(super) fn enter(&self, rays: &[(Ray, Interval)], memory: &mut SearchMemory) -> Steps {
+        memory.leave();
+        if rays.iter().all(|(ray, _)| self.can_walk(ray)) {
+            self.partition.enter(rays, &mut memory.walk)
+        } else {
+            Steps::default()
+        }
     }
 
     /// Shows `test` the triangles in the cells on the line, each once; it returns the new end.

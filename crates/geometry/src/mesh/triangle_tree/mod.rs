@@ -8,6 +8,7 @@ mod volumes;
 use std::ops::Range;
 
 use octray_math::{Aabb, DVec3, Interval, Ray};
+use octray_tree::traversal::Steps;
 use octray_tree::{PartitionStats, WideTree, WideTreeError, WideTreeStats};
 
 use super::{TriangleHit, TriangleRay};
@@ -163,6 +164,22 @@ impl TriangleTree {
                 words.iter().map(|&word| u32::from_ne_bytes(word))
             })),
             Index::Cells(cells) => Box::new(cells.words()),
+        }
+    }
+
+    /// Whether neighbouring rays travel together: then [`TriangleTree::enter`] is worth its call.
+    #[must_use]
+    pub fn has_beams(&self) -> bool {
+        matches!(&self.index, Index::Cells(cells) if cells.has_beams())
+    }
+
+    /// Takes a run of rays, each with the part of it that counts, through the upper cells together;
+    /// until [`SearchMemory::leave`], only these may be searched with this memory. Returns what it
+    /// cost.
+    pub fn enter(&self, rays: &[(Ray, Interval)], memory: &mut SearchMemory) -> Steps {
+        match &self.index {
+            Index::Cells(cells) => cells.enter(rays, memory),
+            _ => Steps::default(),
         }
     }
 

@@ -47,6 +47,13 @@ pub struct SearchMemory {
     pub(super) mailbox: Mailbox,
 }
 
+impl SearchMemory {
+    /// The rays to come are others than those that entered together last.
+    pub const fn leave(&mut self) {
+        self.walk.leave();
+    }
+}
+
 /// Which triangles have been tested with the ray at hand.
 ///
 /// A triangle in several cells is tested once per ray (the mailbox of Arnaldi, Priol and Bouatouch
