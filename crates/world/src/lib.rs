@@ -5,6 +5,7 @@
 //! what to test, one `f64` function per shape decides, and ties go to the lowest face.
 
 mod batch;
+mod beam;
 mod chords;
 mod faces;
 mod figures;
@@ -13,6 +14,7 @@ mod line;
 mod method;
 mod query;
 mod sheets;
+mod slice;
 mod solids;
 mod start;
 mod surfaces;
@@ -27,6 +29,7 @@ pub use surfaces::{NearCoincidence, SurfaceReport};
 pub use world::{World, WorldConfig, WorldError, WorldStats};
 
 pub use octray_geometry::Membership;
+pub use octray_geometry::mesh::TriangleMarks;
 pub use octray_tree::{
     CellTreeStats, Criteria, Division, Encoding, LvsiStats, LvsiStore, LvsiTable, PartitionStats,
     TableSize, Tally, Traversal, WideTreeConfig, WideTreeError, WideTreeStats,
