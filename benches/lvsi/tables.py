@@ -1,8 +1,8 @@
 """Measure the LVSI hash table: sizes and loads, and what stored empty space saves.
 
 Runs ``octray render --json`` on three scenes, every choice in interleaved repetitions, and prints
-the tables of ``docs/lvsi.md`` as Markdown. Times are the shortest of the repetitions, relative to the
-first choice in a table.
+the tables of ``docs/lvsi.md`` as Markdown. Times are the shortest of the repetitions, relative to
+the first choice in a table.
 """
 
 from __future__ import annotations
