@@ -51,7 +51,7 @@ pub enum TableSize {
 /// How large the table is.
 ///
 /// A row takes 48 bytes and its head 4, so memory hardly depends on the load, while look-ups grow
-/// fourfold from 0.25 to 4: `docs/lvsi.md` has the measurement behind the default, a prime and 0.75.
+/// three to five times from 0.25 to 4: `docs/lvsi.md` has the measurement behind the default, a prime and 0.75.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LvsiTable {
     /// What number its size is.
