@@ -1,4 +1,5 @@
-//! A cube divided into cubes, as a pointer tree.
+//! A cube divided into cubes, as a pointer tree (Glassner, *Space Subdivision for Fast Ray Tracing*,
+//! 1984).
 //!
 //! Blocks of eight nodes stand in one flat array, level by level and in Morton order within a
 //! level, so the same scene gives the same bytes whatever built it. A node is one word.
