@@ -251,6 +251,30 @@ def test_a_worker_that_dies_is_reported_and_the_rest_goes_on(
     assert len(auto.render_s) == len(brute.render_s) == 2
 
 
+def test_methods_that_do_not_fit_together_run_in_groups_beside_a_yardstick(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    # A worker holds some 40 MB: two of them fit.
+    monkeypatch.setattr("octray.lab.session.available_bytes", lambda: 130 << 20)
+    methods = ["auto", "brute", "boxes", "grid"]
+    report = lab.run(HELLO, accel=methods, size=(32, 24), repeat=1)
+    assert len(report.groups) > 1
+    assert [name for group in report.groups for name in group.methods] == methods
+    assert all(len(group.yardstick_s) == 1 for group in report.groups)
+    assert any("groups" in note for note in report.notes)
+    for group in report.groups:
+        for combination in report.combinations:
+            if combination.method in group.methods:
+                assert combination.status is Status.DONE
+                (seconds,) = combination.render_s
+                assert combination.relative == pytest.approx(seconds / group.yardstick_s[0])
+    # Even where nothing fits, each runs, alone with its yardstick.
+    monkeypatch.setattr("octray.lab.session.available_bytes", lambda: 0)
+    tight = lab.run(HELLO, accel=["boxes", "auto"], size=(32, 24), repeat=1)
+    assert [group.methods for group in tight.groups] == [["auto"], ["boxes"]]
+    assert all(c.same for c in tight.combinations)
+
+
 def test_a_worker_that_is_asked_for_the_impossible_answers_so() -> None:
     worker = WorkerProcess()
     try:
@@ -305,25 +329,41 @@ def test_pixels_are_compared_by_their_bits() -> None:
 
 @pytest.mark.skipif(sys.platform == "win32", reason="no process groups there")
 def test_an_interruption_keeps_what_is_done(tmp_path: Path) -> None:
-    arguments = ["lab", str(HELLO), "--size", "64x48", "--repeat", "100000", "--accel", "auto"]
-    with subprocess.Popen(
-        [*COMMAND, *arguments, "--json", "--progress", "plain"],
+    # Ctrl-C reaches all processes of the terminal's group, here while one renders again and again.
+    code = f"""if True:
+        import os, signal, sys
+        from octray.cli.command import run
+        from octray.lab.session import Session
+
+        repeat = Session.repeat
+
+        def repeat_and_interrupt(self, member, *, build_again):
+            repeat(self, member, build_again=build_again)
+            if len(member.combination.render_s) == 3:
+                os.killpg(0, signal.SIGINT)
+
+        Session.repeat = repeat_and_interrupt
+        methods = ["--accel", "auto", "--accel", "grid", "--repeat", "100"]
+        sys.exit(run(["lab", {str(HELLO)!r}, *{SMALL!r}, *methods, "--json"]))
+    """
+    done = subprocess.run(
+        [sys.executable, "-c", code],
         cwd=tmp_path,
-        stdout=subprocess.PIPE,
-        stderr=subprocess.PIPE,
+        capture_output=True,
         text=True,
         start_new_session=True,
-    ) as process:
-        time.sleep(3)
-        os.killpg(process.pid, signal.SIGINT)
-        out, _ = process.communicate(timeout=60)
-    assert process.returncode == 130
-    report = json.loads(out)
+        timeout=120,
+        check=False,
+    )
+    assert done.returncode == 130, done.stderr
+    report = json.loads(done.stdout)
     assert report["interrupted"]
-    (auto,) = report["combinations"]
-    assert auto["status"] == "interrupted"
-    assert len(auto["render"]["times_s"]) >= 1
+    auto, grid = report["combinations"]
+    assert auto["status"] == grid["status"] == "interrupted"
+    assert (len(auto["render"]["times_s"]), len(grid["render"]["times_s"])) == (3, 2)
+    assert auto["message"] == "3 of 100 repetitions were done"
     assert auto["picture"]["same"]
+    assert grid["picture"]["same"]
 
 
 class Loads(HTMLParser):
