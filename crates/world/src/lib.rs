@@ -5,6 +5,7 @@
 //! what to test, one `f64` function per shape decides, and ties go to the lowest face.
 
 mod batch;
+mod beam;
 mod chords;
 mod faces;
 mod figures;

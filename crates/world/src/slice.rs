@@ -55,6 +55,14 @@ impl World {
     ) {
         hits.clear();
         self.scratch.with(|scratch| {
+            if self.solids.has_beams() {
+                self.answer_in_beams(queries, scratch, &mut account, |line, scratch, counters| {
+                    hits.push(line.map_or(Hit::MISS, |line| {
+                        self.closest_on_line(line, scratch, counters)
+                    }));
+                });
+                return;
+            }
             hits.extend(queries.iter().enumerate().map(|(index, query)| {
                 let counters = account.of(index);
                 counters.rays += 1;
@@ -88,6 +96,16 @@ impl World {
         blocked.clear();
         let stops = |face| self.blocks(face);
         self.scratch.with(|scratch| {
+            if self.solids.has_beams() {
+                self.answer_in_beams(queries, scratch, &mut account, |line, scratch, counters| {
+                    blocked.push(
+                        line.is_some_and(|line| {
+                            self.line_meets_any(&line, &stops, scratch, counters)
+                        }),
+                    );
+                });
+                return;
+            }
             blocked.extend(queries.iter().enumerate().map(|(index, query)| {
                 let counters = account.of(index);
                 counters.rays += 1;

@@ -185,9 +185,20 @@ impl World {
         scratch: &mut Scratch,
         counters: &mut Counters,
     ) -> Hit {
-        let Some(mut line) = self.line(query, false) else {
-            return Hit::MISS;
-        };
+        match self.line(query, false) {
+            Some(line) => self.closest_on_line(line, scratch, counters),
+            None => Hit::MISS,
+        }
+    }
+
+    /// The nearest surface on a half-line.
+    #[inline]
+    pub(crate) fn closest_on_line(
+        &self,
+        mut line: Line,
+        scratch: &mut Scratch,
+        counters: &mut Counters,
+    ) -> Hit {
         loop {
             match self.nearest(&line, scratch, counters) {
                 None => return Hit::MISS,
@@ -257,13 +268,23 @@ impl World {
         scratch: &mut Scratch,
         counters: &mut Counters,
     ) -> bool {
-        let Some(line) = self.line(query, false) else {
-            return false;
-        };
+        let line = self.line(query, false);
+        line.is_some_and(|line| self.line_meets_any(&line, counts, scratch, counters))
+    }
+
+    /// Whether any of the faces that count lies on the half-line.
+    #[inline]
+    pub(crate) fn line_meets_any(
+        &self,
+        line: &Line,
+        counts: &impl Fn(FaceId) -> bool,
+        scratch: &mut Scratch,
+        counters: &mut Counters,
+    ) -> bool {
         let found = Cell::new(false);
         // Returns the parameter beyond which nothing matters any more.
         let visit = |s: f64, face: FaceId, entering: bool| {
-            let counts = s < line.end && counts(face) && !self.starts_on(&line, s, face, entering);
+            let counts = s < line.end && counts(face) && !self.starts_on(line, s, face, entering);
             found.set(found.get() || counts);
             if found.get() {
                 f64::NEG_INFINITY
@@ -272,7 +293,7 @@ impl World {
             }
         };
         self.sheets.visit_line(
-            &line,
+            line,
             f64::INFINITY,
             &mut scratch.triangles,
             counters,
@@ -280,7 +301,7 @@ impl World {
         );
         if !found.get() {
             self.solids
-                .sweep_line(&line, f64::INFINITY, scratch, counters, |change| {
+                .sweep_line(line, f64::INFINITY, scratch, counters, |change| {
                     change
                         .interface()
                         .map_or(f64::INFINITY, |i| visit(i.s, i.face, i.entering))
