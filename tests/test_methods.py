@@ -30,7 +30,9 @@ def test_every_method_gives_the_same_picture_and_the_same_crossings() -> None:
     size = (48, 32)
     picture = part().render(size=size, accel="brute").to_numpy()
     chords = part().list_intersections(rays, accel="brute")
-    assert {"auto", "spheres", "boxes", "grid", "octree:lvsi:sung"} <= set(octray.methods())
+    assert {"auto", "spheres", "boxes", "grid", "octree:lvsi:sung:analytic"} <= set(
+        octray.methods()
+    )
     for method in [*octray.methods(), "grid:5", "octree", "octree:lvsi-empty"]:
         scene = part()
         image = scene.render(size=size, accel=method).to_numpy()

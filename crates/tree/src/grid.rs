@@ -125,6 +125,9 @@ impl Grid {
                 low: [0; 3],
                 high: resolution,
             };
+            if voxels == 1 {
+                building.take(subdivide.bytes(&content));
+            }
             let done = voxels == 1 || grid.divide(whole, &content, subdivide, &mut building);
             peak_bytes = peak_bytes.max(grid.bytes() + building.peak);
             if !done {

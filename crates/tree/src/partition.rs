@@ -1,6 +1,9 @@
 //! A partition of space into cells, kept and walked in one of several ways: the table of what can be
 //! combined.
 
+#[cfg(test)]
+mod tests;
+
 use octray_math::{Aabb, CellKey, DVec3, Interval, Ray};
 
 use crate::cell_tree::{

@@ -63,39 +63,34 @@ impl Criteria {
     }
 }
 
-/// The points on each axis by which [`filled_share`] measures.
-const SAMPLES: u32 = 4;
+/// The points on each axis by which [`filled_share`] measures: as many as a word has bits.
+const SAMPLES: usize = u16::BITS as usize;
 
-/// The share of a cell that boxes fill together, wherever they overlap: of 4 x 4 x 4 points spread
+/// The share of a cell that boxes fill together, wherever they overlap: of 16 x 16 x 16 points spread
 /// evenly over the cell, those that lie in any of the boxes.
 #[must_use]
 pub fn filled_share(cell: &Aabb, boxes: impl IntoIterator<Item = Aabb>) -> f64 {
-    const ALL: u64 = u64::MAX;
-    // One bit for each point; x runs fastest.
-    let mut filled = 0_u64;
+    // One bit for each point; a word is a row along x.
+    let mut rows = [[0_u16; SAMPLES]; SAMPLES];
     for bounds in boxes {
-        let mut inside = ALL;
-        for axis in 0..3 {
+        let slabs: [u16; 3] = std::array::from_fn(|axis| {
             let (low, size) = (cell.min[axis], cell.max[axis] - cell.min[axis]);
-            let mut slab = 0_u64;
-            for i in 0..SAMPLES {
-                let x = low + size * ((f64::from(i) + 0.5) / f64::from(SAMPLES));
-                if (bounds.min[axis]..=bounds.max[axis]).contains(&x) {
-                    slab |= match axis {
-                        0 => 0x1111_1111_1111_1111 << i,
-                        1 => 0x000f_000f_000f_000f << (4 * i),
-                        _ => 0xffff << (16 * i),
-                    };
+            let inside = bounds.min[axis]..=bounds.max[axis];
+            let at = |i: usize| low + size * ((i as f64 + 0.5) / SAMPLES as f64);
+            (0..SAMPLES)
+                .filter(|i| inside.contains(&at(*i)))
+                .fold(0, |slab, i| slab | 1 << i)
+        });
+        for (k, layer) in rows.iter_mut().enumerate() {
+            for (j, row) in layer.iter_mut().enumerate() {
+                if slabs[2] >> k & slabs[1] >> j & 1 == 1 {
+                    *row |= slabs[0];
                 }
             }
-            inside &= slab;
-        }
-        filled |= inside;
-        if filled == ALL {
-            break;
         }
     }
-    f64::from(filled.count_ones()) / 64.0
+    let filled: u32 = rows.iter().flatten().map(|row| row.count_ones()).sum();
+    f64::from(filled) / (SAMPLES * SAMPLES * SAMPLES) as f64
 }
 
 #[cfg(test)]
