@@ -171,6 +171,26 @@ def test_the_json_is_alone_and_as_documented(octray_command: Octray) -> None:
     assert brute["per_ray"] == pytest.approx(direct.report["tests_per_ray"])
 
 
+def test_triangles_of_meshes_have_cells_too(cube: Path) -> None:
+    methods = ["auto", "brute", "octree", "octree:tree:ordered:bounding-box", "grid:4"]
+    report = lab.run(cube, accel=methods, size=(32, 24), repeat=1, drawings=True)
+    check_against_page(json.loads(report.to_json()))
+    auto, brute, octree, boxes, grid = (c.to_dict() for c in report.combinations)
+    assert auto["nodes"] == {"wide": 1}
+    assert (brute["nodes"], brute["triangle_cube_steps"]) == (None, None)
+    leaves = sum(count for _, count in octree["objects_per_leaf"])
+    assert octree["nodes"]["occupied"] == leaves > 1
+    for entry in (octree, grid):
+        decided = sum(entry["triangle_cube_steps"].values())
+        assert decided == entry["marks"]["questions"]
+        listed = sum(number * leaves for number, leaves in entry["objects_per_leaf"])
+        assert listed == entry["marks"]["references"] > 0
+        assert entry["memory"]["parts"]["triangle_cells"] > 0
+    assert sum(boxes["triangle_cube_steps"].values()) == 0
+    assert grid["nodes"]["empty"] + grid["nodes"]["occupied"] == 4**3
+    assert len(report.drawings.cells["grid:4"]["depth"]) == 4**3
+
+
 def test_what_is_no_method_is_refused_before_anything_runs(octray_command: Octray) -> None:
     done = octray_command("lab", "absent.pov", "--accel", "auto", "--accel", "octree:hash")
     assert done.returncode == 2

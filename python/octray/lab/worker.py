@@ -16,7 +16,7 @@ import sys
 import threading
 import time
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
@@ -127,11 +127,17 @@ class Worker:
         save(Path(file), hits.position[hits.hit])
         return {}
 
+    def _cells(self, kind: Literal["solids", "triangles"]) -> octray.Cells | None:
+        """Give the cells over solids or over triangles; ``None`` where there are none."""
+        try:
+            return self.scene.cells(accel=self.accel, kind=kind)
+        except ValueError:  # the method divides no space, or nothing of the kind is there
+            return None
+
     def do_cells(self, file: str) -> dict[str, Any]:
         """Leave the cells in a file; without one if the method has none."""
-        try:
-            cells = self.scene.cells(accel=self.accel)
-        except ValueError:  # it divides no space, or there is nothing in it
+        cells = self._cells("solids") or self._cells("triangles")
+        if cells is None:
             return {"cells": 0}
         with Path(file).open("wb") as out:
             np.savez(
