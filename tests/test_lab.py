@@ -506,3 +506,14 @@ def test_the_examples_of_the_page_do_what_it_says(
     )
     assert done.returncode == 0, done.stderr
     assert (tmp_path / "coupling-lab" / "index.html").exists()
+
+
+def test_numbers_are_short_and_have_no_exponent() -> None:
+    from octray.lab.table import count, number  # noqa: PLC0415 - only here
+
+    assert [count(n) for n in (None, 0, 9_000, 12_345, 999_900, 1_346_000, 2_100_000_000)] == [
+        *("-", "0", "9000", "12.3k", "1M", "1.35M", "2100M")
+    ]
+    assert [number(x) for x in (None, 0.0, 1234.5, 12.345, 0.000012)] == [
+        *("-", "0", "1234", "12.3", "0.000012")
+    ]
