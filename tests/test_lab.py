@@ -171,6 +171,26 @@ def test_the_json_is_alone_and_as_documented(octray_command: Octray) -> None:
     assert brute["per_ray"] == pytest.approx(direct.report["tests_per_ray"])
 
 
+def test_triangles_of_meshes_have_cells_too(cube: Path) -> None:
+    methods = ["auto", "brute", "octree", "octree:tree:ordered:bounding-box", "grid:4"]
+    report = lab.run(cube, accel=methods, size=(32, 24), repeat=1, drawings=True)
+    check_against_page(json.loads(report.to_json()))
+    auto, brute, octree, boxes, grid = (c.to_dict() for c in report.combinations)
+    assert auto["nodes"] == {"wide": 1}
+    assert (brute["nodes"], brute["triangle_cube_steps"]) == (None, None)
+    leaves = sum(count for _, count in octree["objects_per_leaf"])
+    assert octree["nodes"]["occupied"] == leaves > 1
+    for entry in (octree, grid):
+        decided = sum(entry["triangle_cube_steps"].values())
+        assert decided == entry["marks"]["questions"]
+        listed = sum(number * leaves for number, leaves in entry["objects_per_leaf"])
+        assert listed == entry["marks"]["references"] > 0
+        assert entry["memory"]["parts"]["triangle_cells"] > 0
+    assert sum(boxes["triangle_cube_steps"].values()) == 0
+    assert grid["nodes"]["empty"] + grid["nodes"]["occupied"] == 4**3
+    assert len(report.drawings.cells["grid:4"]["depth"]) == 4**3
+
+
 def test_what_is_no_method_is_refused_before_anything_runs(octray_command: Octray) -> None:
     done = octray_command("lab", "absent.pov", "--accel", "auto", "--accel", "octree:hash")
     assert done.returncode == 2
@@ -251,6 +271,30 @@ def test_a_worker_that_dies_is_reported_and_the_rest_goes_on(
     assert len(auto.render_s) == len(brute.render_s) == 2
 
 
+def test_methods_that_do_not_fit_together_run_in_groups_beside_a_yardstick(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    # A worker holds some 40 MB: two of them fit.
+    monkeypatch.setattr("octray.lab.session.available_bytes", lambda: 130 << 20)
+    methods = ["auto", "brute", "boxes", "grid"]
+    report = lab.run(HELLO, accel=methods, size=(32, 24), repeat=1)
+    assert len(report.groups) > 1
+    assert [name for group in report.groups for name in group.methods] == methods
+    assert all(len(group.yardstick_s) == 1 for group in report.groups)
+    assert any("groups" in note for note in report.notes)
+    for group in report.groups:
+        for combination in report.combinations:
+            if combination.method in group.methods:
+                assert combination.status is Status.DONE
+                (seconds,) = combination.render_s
+                assert combination.relative == pytest.approx(seconds / group.yardstick_s[0])
+    # Even where nothing fits, each runs, alone with its yardstick.
+    monkeypatch.setattr("octray.lab.session.available_bytes", lambda: 0)
+    tight = lab.run(HELLO, accel=["boxes", "auto"], size=(32, 24), repeat=1)
+    assert [group.methods for group in tight.groups] == [["auto"], ["boxes"]]
+    assert all(c.same for c in tight.combinations)
+
+
 def test_a_worker_that_is_asked_for_the_impossible_answers_so() -> None:
     worker = WorkerProcess()
     try:
@@ -305,25 +349,41 @@ def test_pixels_are_compared_by_their_bits() -> None:
 
 @pytest.mark.skipif(sys.platform == "win32", reason="no process groups there")
 def test_an_interruption_keeps_what_is_done(tmp_path: Path) -> None:
-    arguments = ["lab", str(HELLO), "--size", "64x48", "--repeat", "100000", "--accel", "auto"]
-    with subprocess.Popen(
-        [*COMMAND, *arguments, "--json", "--progress", "plain"],
+    # Ctrl-C reaches all processes of the terminal's group, here while one renders again and again.
+    code = f"""if True:
+        import os, signal, sys
+        from octray.cli.command import run
+        from octray.lab.session import Session
+
+        repeat = Session.repeat
+
+        def repeat_and_interrupt(self, member, *, build_again):
+            repeat(self, member, build_again=build_again)
+            if len(member.combination.render_s) == 3:
+                os.killpg(0, signal.SIGINT)
+
+        Session.repeat = repeat_and_interrupt
+        methods = ["--accel", "auto", "--accel", "grid", "--repeat", "100"]
+        sys.exit(run(["lab", {str(HELLO)!r}, *{SMALL!r}, *methods, "--json"]))
+    """
+    done = subprocess.run(
+        [sys.executable, "-c", code],
         cwd=tmp_path,
-        stdout=subprocess.PIPE,
-        stderr=subprocess.PIPE,
+        capture_output=True,
         text=True,
         start_new_session=True,
-    ) as process:
-        time.sleep(3)
-        os.killpg(process.pid, signal.SIGINT)
-        out, _ = process.communicate(timeout=60)
-    assert process.returncode == 130
-    report = json.loads(out)
+        timeout=120,
+        check=False,
+    )
+    assert done.returncode == 130, done.stderr
+    report = json.loads(done.stdout)
     assert report["interrupted"]
-    (auto,) = report["combinations"]
-    assert auto["status"] == "interrupted"
-    assert len(auto["render"]["times_s"]) >= 1
+    auto, grid = report["combinations"]
+    assert auto["status"] == grid["status"] == "interrupted"
+    assert (len(auto["render"]["times_s"]), len(grid["render"]["times_s"])) == (3, 2)
+    assert auto["message"] == "3 of 100 repetitions were done"
     assert auto["picture"]["same"]
+    assert grid["picture"]["same"]
 
 
 class Loads(HTMLParser):
@@ -446,3 +506,14 @@ def test_the_examples_of_the_page_do_what_it_says(
     )
     assert done.returncode == 0, done.stderr
     assert (tmp_path / "coupling-lab" / "index.html").exists()
+
+
+def test_numbers_are_short_and_have_no_exponent() -> None:
+    from octray.lab.table import count, number  # noqa: PLC0415 - only here
+
+    assert [count(n) for n in (None, 0, 9_000, 12_345, 999_900, 1_346_000, 2_100_000_000)] == [
+        *("-", "0", "9000", "12.3k", "1M", "1.35M", "2100M")
+    ]
+    assert [number(x) for x in (None, 0.0, 1234.5, 12.345, 0.000012)] == [
+        *("-", "0", "1234", "12.3", "0.000012")
+    ]

@@ -1,9 +1,13 @@
 //! Figures about what was built, as dictionaries.
 //!
-//! `trees.cells` and `trees.wide` are about the cells over solids and the wide tree over the triangles
-//! of sheets, `None` where the method has none. Of a grid, cells are voxels, at depth 0.
+//! `trees.cells`, `trees.triangles` and `trees.wide` are about the cells over solids, those over the
+//! triangles of sheets, where each triangle is an object, and the wide tree over these; `None` where
+//! the method has none. Of a grid, cells are voxels, at depth 0. `triangle_cube` says of cells over
+//! triangles how many `questions` were asked while they were divided, which of the `steps` of the
+//! triangle-cube test decided how many, how many `references` to triangles the cells keep, and how
+//! many the fullest (`most`).
 //!
-//! | `trees.cells` | |
+//! | `trees.cells`, `trees.triangles` | |
 //! |---|---|
 //! | `empty`, `occupied`, `divided` | how many cells there are of each kind |
 //! | `depth`, `empty_by_depth`, `occupied_by_depth` | of the deepest cell; leaves of each depth |
@@ -16,7 +20,9 @@
 //! `memory` is bytes by part (see `octray::world::MemoryStats`), their `total`, and `peak_bytes` of the
 //! process, where the system tells.
 
-use octray::world::{LvsiStats, MemoryStats, PartitionStats, Tally, WideTreeStats, WorldStats};
+use octray::world::{
+    LvsiStats, MemoryStats, PartitionStats, Tally, TriangleMarks, WideTreeStats, WorldStats,
+};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
@@ -92,6 +98,7 @@ fn memory<'py>(py: Python<'py>, stats: &MemoryStats) -> PyResult<Bound<'py, PyDi
     dict.set_item("surfaces", stats.surfaces)?;
     dict.set_item("faces", stats.faces)?;
     dict.set_item("triangles", stats.triangles)?;
+    dict.set_item("triangle_cells", stats.triangle_cells)?;
     dict.set_item("wide_trees", stats.wide_trees)?;
     dict.set_item("total", stats.total())?;
     dict.set_item("building", stats.building)?;
@@ -116,6 +123,22 @@ fn world<'py>(py: Python<'py>, stats: &WorldStats) -> PyResult<Bound<'py, PyDict
     Ok(dict)
 }
 
+fn triangle_cube<'py>(py: Python<'py>, marks: &TriangleMarks) -> PyResult<Bound<'py, PyDict>> {
+    let steps = PyDict::new(py);
+    for (name, count) in ["vertex", "face", "edge", "diagonal"]
+        .into_iter()
+        .zip(marks.steps)
+    {
+        steps.set_item(name, count)?;
+    }
+    let dict = PyDict::new(py);
+    dict.set_item("questions", marks.questions)?;
+    dict.set_item("steps", steps)?;
+    dict.set_item("references", marks.references)?;
+    dict.set_item("most", marks.most)?;
+    Ok(dict)
+}
+
 /// Adds `trees`, `memory` and `world` to a report.
 pub(crate) fn add(py: Python<'_>, report: &Bound<'_, PyDict>, prepared: &Prepared) -> PyResult<()> {
     let stats = prepared.world.stats();
@@ -123,9 +146,15 @@ pub(crate) fn add(py: Python<'_>, report: &Bound<'_, PyDict>, prepared: &Prepare
     let over_solids = stats.cells.as_ref();
     let over_solids = over_solids.map(|s| cells(py, s, &stats.objects_per_leaf));
     trees.set_item("cells", over_solids.transpose()?)?;
+    let over_triangles = stats.triangle_cells.as_ref();
+    let over_triangles = over_triangles.map(|s| cells(py, s, &s.cells.parts));
+    trees.set_item("triangles", over_triangles.transpose()?)?;
     let over_triangles = stats.triangle_tree.as_ref();
     trees.set_item("wide", over_triangles.map(|s| wide(py, s)).transpose()?)?;
     report.set_item("trees", trees)?;
+    let marks = stats.triangle_marks.as_ref();
+    let marks = marks.map(|m| triangle_cube(py, m)).transpose()?;
+    report.set_item("triangle_cube", marks)?;
     report.set_item("memory", memory(py, &stats.memory)?)?;
     report.set_item("world", world(py, &stats)?)
 }

@@ -20,6 +20,8 @@ pub struct MemoryStats {
     pub faces: u64,
     /// Triangles with their corners, of sheets and mesh operands.
     pub triangles: u64,
+    /// Cells over triangles, with the lists of triangles in them.
+    pub triangle_cells: u64,
     /// The octrees with wide nodes over triangles.
     pub wide_trees: u64,
     /// The most bytes that cells and their contents took while they were built, with what building
@@ -37,6 +39,7 @@ impl MemoryStats {
             + self.surfaces
             + self.faces
             + self.triangles
+            + self.triangle_cells
             + self.wide_trees
     }
 }
@@ -101,11 +104,23 @@ impl World {
 
     /// The cells, and what the occupied ones hold.
     fn partition(&self, of: CellsOf) -> Option<(&Partition, impl Fn(u32) -> Held + '_)> {
+        let triangles = self.sheets.triangles();
         let partition = match of {
             CellsOf::Solids => self.solids.partition()?,
-            CellsOf::Triangles => return None,
+            CellsOf::Triangles => triangles.partition()?,
         };
-        Some((partition, |leaf| self.solids.held(leaf)))
+        let held = move |leaf| match of {
+            CellsOf::Solids => self.solids.held(leaf),
+            // A triangle is what the paper calls an object.
+            CellsOf::Triangles => {
+                let count = triangles.listed(leaf) as u32;
+                Held {
+                    objects: count,
+                    parts: count,
+                }
+            }
+        };
+        Some((partition, held))
     }
 
     fn in_world(&self, bounds: &Aabb) -> Aabb {
@@ -117,6 +132,7 @@ impl World {
         let mut memory = self.solids.memory();
         let triangles = self.sheets.triangles();
         memory.triangles += triangles.bytes();
+        memory.triangle_cells += triangles.cell_bytes();
         memory.wide_trees += triangles.tree_stats().map_or(0, |stats| stats.bytes);
         memory
     }

@@ -33,7 +33,8 @@ class Figures:
     per_leaf: list[list[int]] | None = None
     #: The hash table, where there is one.
     lvsi: dict[str, Any] | None = None
-    #: How often cells were marked, and how each step of the triangle-cube test decided.
+    #: Of cells over triangles: questions whether one touches a cell, and lists that came of them;
+    #: how many of the questions each step of the triangle-cube test decided.
     marks: dict[str, int] | None = None
     triangle_cube_steps: dict[str, int] | None = None
     #: Numbers of rays by kind.
@@ -116,8 +117,10 @@ def of(report: dict[str, Any] | None, stats: dict[str, Any] | None) -> Figures:
         figures.parts = {part: n for part, n in memory.items() if part not in _NO_PARTS}
         figures.memory = sum((figures.structure or {}).values())
         figures.building = memory["building"]
-        figures.marks = built.get("marks")
-        figures.triangle_cube_steps = built.get("triangle_cube_steps")
+        marks = built["triangle_cube"]
+        if marks is not None:
+            figures.triangle_cube_steps = marks["steps"]
+            figures.marks = {what: n for what, n in marks.items() if what != "steps"}
     if report is not None:
         figures.rays = dict(report["rays"])
         figures.per_ray = dict(report["tests_per_ray"])

@@ -31,9 +31,11 @@ def count(value: int | None) -> str:
     """Write a count, in thousands or millions where it is long."""
     if value is None:
         return ABSENT
-    for unit, size in (("M", 1e6), ("k", 1e3)):
-        if value >= 10 * size:
-            return f"{value / size:.3g}{unit}"
+    for unit, size, least in (("M", 1e6, 1e6), ("k", 1e3, 1e4)):
+        # What rounds up to a million is one.
+        if value >= 0.9995 * least:
+            text = f"{value / size:.3g}"
+            return (text if "e" not in text else f"{value / size:.0f}") + unit
     return str(value)
 
 

@@ -16,7 +16,7 @@ import sys
 import threading
 import time
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
@@ -27,6 +27,13 @@ if TYPE_CHECKING:
     import numpy.typing as npt
 
 
+#: Address space for stacks of the threads that a build and a rendering start.
+_STACKS = 16 << 20
+#: What a failure says that has lack of memory as its cause: a structure that the limit leaves no
+#: room for at all, and threads or maps that the system refuses.
+_LACK = ("bytes, more than the limit of", "(os error 11)", "(os error 12)")
+
+
 def limit_memory(extra: int) -> bool:
     """Let the address space grow by ``extra`` bytes more; say whether the system can do that."""
     size = address_bytes()
@@ -35,7 +42,7 @@ def limit_memory(extra: int) -> bool:
     import resource  # noqa: PLC0415 - only where there is a size of the address space
 
     _, hard = resource.getrlimit(resource.RLIMIT_AS)
-    limit = size + extra
+    limit = size + extra + _STACKS
     if hard != resource.RLIM_INFINITY:
         limit = min(limit, hard)
     resource.setrlimit(resource.RLIMIT_AS, (limit, hard))
@@ -120,11 +127,17 @@ class Worker:
         save(Path(file), hits.position[hits.hit])
         return {}
 
+    def _cells(self, kind: Literal["solids", "triangles"]) -> octray.Cells | None:
+        """Give the cells over solids or over triangles; ``None`` where there are none."""
+        try:
+            return self.scene.cells(accel=self.accel, kind=kind)
+        except ValueError:  # the method divides no space, or nothing of the kind is there
+            return None
+
     def do_cells(self, file: str) -> dict[str, Any]:
         """Leave the cells in a file; without one if the method has none."""
-        try:
-            cells = self.scene.cells(accel=self.accel)
-        except ValueError:  # it divides no space, or there is nothing in it
+        cells = self._cells("solids") or self._cells("triangles")
+        if cells is None:
             return {"cells": 0}
         with Path(file).open("wb") as out:
             np.savez(
@@ -168,9 +181,8 @@ def answer(worker: Worker, request: dict[str, Any]) -> dict[str, Any]:
         return {"error": "memory", "message": "out of memory"}
     except Exception as error:  # noqa: BLE001 - whatever it is, the others go on
         text = str(error) or type(error).__name__
-        # So ends a structure that the limit of memory leaves no room to stay coarser in.
-        refused = "bytes, more than the limit of" in text
-        return {"error": "memory" if refused else "failed", "message": text}
+        lack = any(words in text for words in _LACK)
+        return {"error": "memory" if lack else "failed", "message": text}
     return done
 
 

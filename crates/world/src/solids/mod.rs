@@ -309,6 +309,7 @@ impl Solids {
             faces: (size_of_val(self.faces.as_slice()) + size_of_val(self.face_owner.as_slice()))
                 as u64,
             triangles: meshes().map(TriangleTree::bytes).sum(),
+            triangle_cells: meshes().map(TriangleTree::cell_bytes).sum(),
             wide_trees: meshes()
                 .filter_map(TriangleTree::tree_stats)
                 .map(|stats| stats.bytes)

@@ -97,6 +97,22 @@ impl TriangleCells {
         self.partition.stats()
     }
 
+    pub(super) const fn partition(&self) -> &Partition {
+        &self.partition
+    }
+
+    /// How many triangles the occupied cell with this index lists.
+    pub(super) fn listed(&self, leaf: u32) -> usize {
+        let leaf = leaf as usize;
+        self.starts[leaf + 1] - self.starts[leaf]
+    }
+
+    /// Bytes of the cells and of their lists.
+    pub(super) fn bytes(&self) -> u64 {
+        let lists = size_of_val(self.starts.as_slice()) + size_of_val(self.items.as_slice());
+        self.partition.stats().cells.node_bytes + lists as u64
+    }
+
     pub(super) const fn marks(&self) -> &TriangleMarks {
         &self.marks
     }

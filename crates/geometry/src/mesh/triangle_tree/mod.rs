@@ -9,7 +9,7 @@ use std::ops::Range;
 
 use octray_math::{Aabb, DVec3, Interval, Ray};
 use octray_tree::traversal::Steps;
-use octray_tree::{PartitionStats, WideTree, WideTreeError, WideTreeStats};
+use octray_tree::{Partition, PartitionStats, WideTree, WideTreeError, WideTreeStats};
 
 use super::{TriangleHit, TriangleRay};
 use cells::TriangleCells;
@@ -152,6 +152,33 @@ impl TriangleTree {
         match &self.index {
             Index::Cells(cells) => Some((cells.stats(), cells.marks())),
             _ => None,
+        }
+    }
+
+    /// The cells, if there are any.
+    #[must_use]
+    pub const fn partition(&self) -> Option<&Partition> {
+        match &self.index {
+            Index::Cells(cells) => Some(cells.partition()),
+            _ => None,
+        }
+    }
+
+    /// How many triangles the occupied cell with this index lists; 0 where there are no cells.
+    #[must_use]
+    pub fn listed(&self, leaf: u32) -> usize {
+        match &self.index {
+            Index::Cells(cells) => cells.listed(leaf),
+            _ => 0,
+        }
+    }
+
+    /// Bytes of the cells with their lists of triangles, 0 where there are none.
+    #[must_use]
+    pub fn cell_bytes(&self) -> u64 {
+        match &self.index {
+            Index::Cells(cells) => cells.bytes(),
+            _ => 0,
         }
     }
 
