@@ -20,6 +20,7 @@ from typing import TYPE_CHECKING
 
 from octray._core import (
     Camera,
+    Cells,
     Diagnostic,
     DirectionalLight,
     Hits,
@@ -64,6 +65,7 @@ if TYPE_CHECKING:
 
 __all__ = [
     "Camera",
+    "Cells",
     "Diagnostic",
     "DirectionalLight",
     "Hits",

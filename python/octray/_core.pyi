@@ -8,11 +8,12 @@ import numpy as np
 import numpy.typing as npt
 from typing_extensions import Unpack, disjoint_base
 
-from octray._options import Accel, MeshRule, Overlaps, RenderOptions, View
+from octray._options import Accel, Integrator, MeshRule, Overlaps, RenderOptions, View
 from octray.ray import RayIntersector
 
 __all__ = [
     "Camera",
+    "Cells",
     "Diagnostic",
     "DirectionalLight",
     "Hits",
@@ -337,6 +338,24 @@ class Intersections:
     def __getitem__(self, key: SupportsIndex | slice, /) -> Intersections: ...
 
 @final
+class Cells:
+    @property
+    def root(self) -> _Bounds: ...
+    @property
+    def bounds(self) -> _Floats: ...
+    @property
+    def depth(self) -> _Integers: ...
+    @property
+    def key(self) -> _Integers: ...
+    @property
+    def kind(self) -> npt.NDArray[np.str_]: ...
+    @property
+    def objects(self) -> _Integers: ...
+    @property
+    def parts(self) -> _Integers: ...
+    def __len__(self) -> int: ...
+
+@final
 class Scene:
     @property
     def camera(self) -> Camera | None: ...
@@ -384,9 +403,22 @@ class Scene:
         *,
         accel: Accel = "auto",
         threads: int | None = None,
+        tree_objects: int | None = None,
         tree_depth: int | None = None,
+        tree_cost: float | Literal["off"] | None = None,
+        tree_share: float | None = None,
         tree_memory: int | None = None,
+        lvsi_table: Literal["prime", "power-of-two"] | None = None,
+        lvsi_load: float | None = None,
     ) -> None: ...
+    def stats(self, *, accel: Accel = "auto", threads: int | None = None) -> dict[str, Any]: ...
+    def cells(
+        self,
+        *,
+        accel: Accel = "auto",
+        kind: Literal["solids", "triangles"] = "solids",
+        threads: int | None = None,
+    ) -> Cells: ...
     def render(self, **options: Unpack[RenderOptions]) -> Image: ...
     @property
     def ray(self) -> RayIntersector: ...
@@ -451,6 +483,8 @@ def check_request(
     crop: tuple[int, int, int, int] | None = None,
     max_depth: int | None = None,
     threshold: float | None = None,
+    view: View | None = None,
+    integrator: Integrator = "whitted",
 ) -> None: ...
 def cpu_features() -> list[str]: ...
 def default_threads() -> int: ...

@@ -9,13 +9,14 @@ use meshes::{Random, nasty_ray, zoo};
 use octray_geometry::mesh::{SearchCost, SearchMemory, TriangleSearch, TriangleTree};
 use octray_geometry::{Membership, TriangleMesh};
 use octray_math::{DVec3, Interval, Ray};
-use octray_tree::{Criteria, Division, Encoding, LvsiStore, Traversal, WideTreeConfig};
+use octray_tree::{Criteria, Division, Encoding, LvsiStore, LvsiTable, Traversal, WideTreeConfig};
 
 /// Every way to search, each encoding, traversal and membership test among them.
 fn searches() -> Vec<TriangleSearch> {
     let criteria = Criteria::default();
     let cells = |division, membership| TriangleSearch::Cells {
         division,
+        table: LvsiTable::default(),
         membership,
         criteria,
     };
@@ -38,6 +39,7 @@ fn searches() -> Vec<TriangleSearch> {
         // So fine that most triangles lie in many cells.
         TriangleSearch::Cells {
             division: tree(Traversal::Ordered),
+            table: LvsiTable::default(),
             membership: Membership::Analytic,
             criteria: Criteria {
                 visit_cost: 0.01,

@@ -3,7 +3,9 @@
 
 mod arrays;
 mod background;
+mod building;
 mod camera;
+mod cells;
 mod check;
 mod convert;
 mod describe;
@@ -22,6 +24,7 @@ mod render;
 mod report;
 mod scene;
 mod solid;
+mod structures;
 mod system;
 mod task;
 mod world;
@@ -33,6 +36,8 @@ use pyo3::pymodule;
 mod _core {
     #[pymodule_export]
     use super::camera::Camera;
+    #[pymodule_export]
+    use super::cells::Cells;
     #[pymodule_export]
     use super::diagnostics::{Diagnostic, SceneError};
     #[pymodule_export]

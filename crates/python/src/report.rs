@@ -2,11 +2,12 @@
 
 use std::time::Duration;
 
-use octray::render::{RayCounts, RenderStats, Rendering};
-use octray::world::{CellTreeStats, Counters, WideTreeStats};
+use octray::render::{COST_WEIGHTS, RayCounts, RenderStats, Rendering};
+use octray::world::Counters;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
+use crate::structures;
 use crate::world::Prepared;
 
 fn rays<'py>(py: Python<'py>, counts: &RayCounts) -> PyResult<Bound<'py, PyDict>> {
@@ -41,44 +42,28 @@ fn tests_by_kind<'py>(py: Python<'py>, stats: &RenderStats) -> PyResult<Bound<'p
     Ok(dict)
 }
 
-fn cells<'py>(py: Python<'py>, stats: &CellTreeStats) -> PyResult<Bound<'py, PyDict>> {
-    let dict = PyDict::new(py);
-    dict.set_item("empty", stats.empty)?;
-    dict.set_item("occupied", stats.occupied)?;
-    dict.set_item("divided", stats.divided)?;
-    dict.set_item("depth", stats.depth)?;
-    dict.set_item("bytes", stats.bytes)?;
-    dict.set_item("stopped_by_depth", stats.stopped_by_depth)?;
-    dict.set_item("stopped_by_size", stats.stopped_by_size)?;
-    dict.set_item("stopped_by_memory", stats.stopped_by_memory)?;
-    Ok(dict)
+/// What the colours of a heat map mean.
+fn heat_scale(py: Python<'_>, high: f64) -> PyResult<Bound<'_, PyDict>> {
+    let weights = PyDict::new(py);
+    let [step, surface, triangle] = COST_WEIGHTS.to_array();
+    weights.set_item("step", step)?;
+    weights.set_item("surface", surface)?;
+    weights.set_item("triangle", triangle)?;
+    let scale = PyDict::new(py);
+    scale.set_item("weights", weights)?;
+    scale.set_item("low", 0.0)?;
+    scale.set_item("high", high)?;
+    Ok(scale)
 }
 
-fn wide<'py>(py: Python<'py>, stats: &WideTreeStats) -> PyResult<Bound<'py, PyDict>> {
-    let dict = PyDict::new(py);
-    dict.set_item("items", stats.items)?;
-    dict.set_item("nodes", stats.nodes)?;
-    dict.set_item("leaves", stats.leaves)?;
-    dict.set_item("depth", stats.depth)?;
-    dict.set_item("bytes", stats.bytes)?;
-    Ok(dict)
-}
-
-/// The most memory this process has had so far, where the system tells.
-fn peak_bytes() -> Option<u64> {
-    let status = std::fs::read_to_string("/proc/self/status").ok()?;
-    let line = status.lines().find(|line| line.starts_with("VmHWM:"))?;
-    let kibibytes: u64 = line.split_whitespace().nth(1)?.parse().ok()?;
-    Some(kibibytes * 1024)
-}
-
-/// Seconds, rays, tests per ray, trees, memory.
+/// Seconds, rays, tests per ray, trees, memory; of a picture of costs, which cost is the hottest.
 pub(crate) fn rendering(
     py: Python<'_>,
     rendering: &Rendering,
     prepared: &Prepared,
     render: Duration,
     threads: usize,
+    hottest: Option<f64>,
 ) -> PyResult<Py<PyDict>> {
     let report = PyDict::new(py);
     let plan = &rendering.plan;
@@ -110,24 +95,11 @@ pub(crate) fn rendering(
     report.set_item("ended_by_generation", stats.ended_by_generation)?;
     report.set_item("ended_by_contribution", stats.ended_by_contribution)?;
 
-    let world = prepared.world.stats();
-    let trees = PyDict::new(py);
-    let cell_tree = world.cells.as_ref();
-    let cell_tree = cell_tree.map(|s| cells(py, &s.cells)).transpose()?;
-    trees.set_item("cells", cell_tree)?;
-    let wide_tree = world.triangle_tree.as_ref();
-    let wide_tree = wide_tree.map(|s| wide(py, s)).transpose()?;
-    trees.set_item("wide", wide_tree)?;
-    report.set_item("trees", trees)?;
-    let memory = PyDict::new(py);
-    memory.set_item("peak_bytes", peak_bytes())?;
-    report.set_item("memory", memory)?;
-    let built = PyDict::new(py);
-    built.set_item("objects", world.objects)?;
-    built.set_item("surfaces", world.surfaces)?;
-    built.set_item("merged_surfaces", world.merged_surfaces)?;
-    built.set_item("faces", world.faces)?;
-    built.set_item("triangles", world.triangles)?;
-    report.set_item("world", built)?;
+    report.set_item(
+        "cost",
+        hottest.map(|high| heat_scale(py, high)).transpose()?,
+    )?;
+
+    structures::add(py, &report, prepared)?;
     Ok(report.unbind())
 }

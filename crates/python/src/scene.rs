@@ -10,7 +10,9 @@ use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
 
 use crate::background;
+use crate::building::Building;
 use crate::camera::Camera;
+use crate::cells::{self, Cells};
 use crate::convert::{Triple, vector};
 use crate::diagnostics::{Diagnostic, invalid_scene};
 use crate::image::Image;
@@ -20,7 +22,8 @@ use crate::objects::Common;
 use crate::queries::{self, Crossings, Hits, Intersections};
 use crate::render::{self, Request};
 use crate::solid::Solid;
-use crate::world::{Prepared, completed, configured, prepare};
+use crate::structures;
+use crate::world::{Prepared, completed, prepare, prepared};
 
 /// Objects, lights, a camera and a background.
 #[pyclass(module = "octray")]
@@ -246,26 +249,73 @@ impl Scene {
         self.diagnostics.clone()
     }
 
-    /// Builds the trees now rather than with the first picture or query, with other limits if these
-    /// are given: the deepest level of the solids' tree (0 to 21), and the bytes that a tree may take.
-    /// What does not fit is left undivided (a tree of triangles is refused), and reported.
-    #[pyo3(signature = (*, accel = "auto", threads = None, tree_depth = None, tree_memory = None))]
+    /// Builds the trees now rather than with the first picture or query, by other criteria if these
+    /// are given. A cell is divided if all of them agree; the answers are the same by any.
+    ///
+    /// `tree_objects`: a cell of at most so many surfaces is not divided. `tree_depth`: the deepest
+    /// level, 0 to 21. `tree_cost`: what entering a cell costs in planes intersected with a ray, as a
+    /// cell is divided where the expected cost of rays falls; `"off"` divides whatever it costs.
+    /// `tree_share`: a cell of which its objects' boxes fill more than this share is not divided.
+    /// `tree_memory`: the bytes that a tree may take; what does not fit is left undivided (a tree of
+    /// triangles is refused), and reported. `lvsi_table` ("prime" or "power-of-two") and `lvsi_load`
+    /// (rows used for each row of the table) say how large a hash table is.
+    #[pyo3(signature = (
+        *, accel = "auto", threads = None, tree_objects = None, tree_depth = None, tree_cost = None,
+        tree_share = None, tree_memory = None, lvsi_table = None, lvsi_load = None
+    ))]
+    #[expect(clippy::too_many_arguments, reason = "all by keyword")]
     fn prepare(
         slf: &Bound<'_, Self>,
         accel: &str,
         threads: Option<usize>,
+        tree_objects: Option<u32>,
         tree_depth: Option<u32>,
+        tree_cost: Option<&Bound<'_, PyAny>>,
+        tree_share: Option<f64>,
         tree_memory: Option<u64>,
+        lvsi_table: Option<&str>,
+        lvsi_load: Option<f64>,
     ) -> PyResult<()> {
-        let config = configured(accel, tree_depth, tree_memory)?;
-        prepare(slf, config, threads).map(|_| ())
+        let building = Building {
+            objects: tree_objects,
+            depth: tree_depth,
+            cost: tree_cost,
+            share: tree_share,
+            memory: tree_memory,
+            table: lvsi_table,
+            load: lvsi_load,
+        };
+        prepare(slf, building.config(accel)?, threads).map(|_| ())
     }
 
-    /// Renders a picture.
+    /// Figures about what a method builds: `method`, `build_s`, `trees`, `memory` and `world`, as in
+    /// `Image.report`. What `prepare` built with criteria of its own counts.
+    #[pyo3(signature = (*, accel = "auto", threads = None))]
+    fn stats<'py>(
+        slf: &Bound<'py, Self>,
+        accel: &str,
+        threads: Option<usize>,
+    ) -> PyResult<Bound<'py, PyDict>> {
+        structures::stats(slf.py(), &prepared(slf, accel, threads)?)
+    }
+
+    /// The cells that a method makes over the scene's solids, or over the triangles of its meshes. A
+    /// method without any is a `ValueError`.
+    #[pyo3(signature = (*, accel = "auto", kind = "solids", threads = None))]
+    fn cells(
+        slf: &Bound<'_, Self>,
+        accel: &str,
+        kind: &str,
+        threads: Option<usize>,
+    ) -> PyResult<Cells> {
+        cells::cells(slf, accel, kind, threads)
+    }
+
+    /// Renders a picture: of light, or with `integrator="cost"` of what the same rays cost.
     #[pyo3(signature = (
         *, size = None, spp = 1, threads = None, accel = "auto", crop = None, view = None,
         max_depth = None, threshold = None, seed = 0, progress = None, preview = None,
-        on_interrupt = "raise"
+        on_interrupt = "raise", integrator = "whitted"
     ))]
     #[expect(clippy::too_many_arguments, reason = "all by keyword")]
     fn render(
@@ -282,6 +332,7 @@ impl Scene {
         progress: Option<&Bound<'_, PyAny>>,
         preview: Option<&Bound<'_, PyAny>>,
         on_interrupt: &str,
+        integrator: &str,
     ) -> PyResult<Image> {
         let request = Request {
             size,
@@ -296,6 +347,7 @@ impl Scene {
             progress,
             preview,
             on_interrupt,
+            integrator,
         };
         render::render(slf, &request)
     }

@@ -4,7 +4,6 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use octray::import::dress;
-use octray::math::MAX_DEPTH;
 use octray::math::{Aabb, DVec3};
 use octray::scene;
 use octray::world::{Method, MethodError, World, WorldConfig};
@@ -40,32 +39,6 @@ pub(crate) fn methods() -> Vec<String> {
 #[pyfunction]
 pub(crate) fn method_name(name: &str) -> PyResult<String> {
     method_called(name).map(|method| method.to_string())
-}
-
-/// How to build, with the limits that are given: the deepest level of the solids' tree, and the bytes
-/// that each tree may take.
-pub(crate) fn configured(
-    accel: &str,
-    tree_depth: Option<u32>,
-    tree_memory: Option<u64>,
-) -> PyResult<WorldConfig> {
-    let mut config = WorldConfig {
-        method: method_called(accel)?,
-        ..WorldConfig::default()
-    };
-    if let Some(depth) = tree_depth {
-        if depth > MAX_DEPTH {
-            return Err(PyValueError::new_err(format!(
-                "tree_depth must be at most {MAX_DEPTH}, not {depth}"
-            )));
-        }
-        config.criteria.max_depth = depth;
-    }
-    if let Some(bytes) = tree_memory {
-        config.criteria.memory_limit = bytes;
-        config.triangles.memory_limit = bytes;
-    }
-    Ok(config)
 }
 
 /// The scene's world, made now unless it is still there from last time.

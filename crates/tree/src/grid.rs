@@ -15,6 +15,7 @@ pub struct Grid {
     /// x runs fastest.
     nodes: Vec<u32>,
     occupied: u64,
+    peak_bytes: u64,
 }
 
 /// A block of voxels: from `low` to before `high`.
@@ -22,6 +23,38 @@ pub struct Grid {
 struct Block {
     low: [u32; 3],
     high: [u32; 3],
+}
+
+impl Block {
+    const fn size(&self, axis: usize) -> u32 {
+        self.high[axis] - self.low[axis]
+    }
+
+    fn is_voxel(&self) -> bool {
+        (0..3).all(|axis| self.size(axis) == 1)
+    }
+}
+
+/// What there is while a grid is built.
+struct Building<C> {
+    /// Occupied voxels with their contents.
+    found: Vec<(usize, C)>,
+    /// Of contents, those of blocks on the way too.
+    bytes: u64,
+    peak: u64,
+    room: u64,
+}
+
+impl<C> Building<C> {
+    /// What is kept beside contents, and what allocating them costs.
+    const BESIDE: u64 = size_of::<(usize, C)>() as u64 + 64;
+
+    /// Takes so many bytes, if there is room.
+    fn take(&mut self, bytes: u64) -> bool {
+        self.bytes += bytes;
+        self.peak = self.peak.max(self.bytes);
+        self.bytes <= self.room
+    }
 }
 
 impl Grid {
@@ -54,74 +87,114 @@ impl Grid {
         [i, j, k]
     }
 
-    /// Divides `bounds`, which must have a positive size on every axis, into voxels. Returns the
-    /// contents of the occupied ones, in the order of their indices.
+    /// Divides `bounds`, which must have a positive size on every axis, into voxels: so many on each
+    /// axis, or half as many again and again until nodes and contents take no more than
+    /// `memory_limit` bytes or one voxel is left. Returns the contents of the occupied ones, in the
+    /// order of their indices.
     pub fn build<S: Subdivide>(
         bounds: Aabb,
         content: S::Content,
         subdivide: &S,
         resolution: [u32; 3],
+        memory_limit: u64,
     ) -> (Self, Vec<S::Content>) {
-        let resolution = resolution.map(|n| n.max(1));
-        let [i, j, k] = resolution.map(|n| n as usize);
-        let mut grid = Self {
-            bounds,
-            resolution,
-            nodes: vec![Node::Empty(0).encode(); i * j * k],
-            occupied: 0,
-        };
-        let mut found: Vec<(usize, S::Content)> = Vec::new();
-        let whole = Block {
-            low: [0; 3],
-            high: resolution,
-        };
-        grid.divide(whole, content, subdivide, &mut found);
-        found.sort_by_key(|(voxel, _)| *voxel);
-        grid.occupied = found.len() as u64;
-        let contents = found
-            .into_iter()
-            .enumerate()
-            .map(|(leaf, (voxel, content))| {
-                grid.nodes[voxel] = Node::Occupied(leaf as u32).encode();
-                content
-            })
-            .collect();
-        (grid, contents)
+        let mut resolution = resolution.map(|n| n.max(1));
+
+        let mut peak_bytes = 0;
+        loop {
+            let voxels: u64 = resolution.into_iter().map(u64::from).product();
+            let room = memory_limit.saturating_sub(voxels * size_of::<u32>() as u64);
+            if voxels > 1 && room == 0 {
+                resolution = resolution.map(|n| n.div_ceil(2));
+                continue;
+            }
+            let mut grid = Self {
+                bounds,
+                resolution,
+                nodes: vec![Node::Empty(0).encode(); voxels as usize],
+                occupied: 0,
+                peak_bytes: 0,
+            };
+            let mut building = Building {
+                found: Vec::new(),
+                bytes: 0,
+                peak: 0,
+                room,
+            };
+            let whole = Block {
+                low: [0; 3],
+                high: resolution,
+            };
+            let done = voxels == 1 || grid.divide(whole, &content, subdivide, &mut building);
+            peak_bytes = peak_bytes.max(grid.bytes() + building.peak);
+            if !done {
+                resolution = resolution.map(|n| n.div_ceil(2));
+                continue;
+            }
+            if voxels == 1 {
+                match subdivide.describe(&content) {
+                    Cell::Empty(state) => grid.nodes[0] = Node::Empty(state).encode(),
+                    Cell::Occupied { .. } => building.found.push((0, content)),
+                }
+            }
+            let mut found = building.found;
+            found.sort_by_key(|(voxel, _)| *voxel);
+            grid.occupied = found.len() as u64;
+            grid.peak_bytes = peak_bytes;
+            let contents = found
+                .into_iter()
+                .enumerate()
+                .map(|(leaf, (voxel, content))| {
+                    grid.nodes[voxel] = Node::Occupied(leaf as u32).encode();
+                    content
+                })
+                .collect();
+            return (grid, contents);
+        }
     }
 
-    /// Halves a block until it is a voxel or empty, so that every voxel looks only at what its
-    /// surroundings hold.
+    /// Halves a block of several voxels until each half is a voxel or empty, so that every voxel looks
+    /// only at what its surroundings hold. Returns whether there was room.
     fn divide<S: Subdivide>(
         &mut self,
         block: Block,
-        content: S::Content,
+        content: &S::Content,
         subdivide: &S,
-        found: &mut Vec<(usize, S::Content)>,
-    ) {
-        let size = |axis: usize| block.high[axis] - block.low[axis];
-        if let Cell::Empty(state) = subdivide.describe(&content) {
+        building: &mut Building<S::Content>,
+    ) -> bool {
+        if let Cell::Empty(state) = subdivide.describe(content) {
             for k in block.low[2]..block.high[2] {
                 for j in block.low[1]..block.high[1] {
                     let row = self.voxel([block.low[0], j, k]);
-                    self.nodes[row..row + size(0) as usize].fill(Node::Empty(state).encode());
+                    let size = block.size(0) as usize;
+                    self.nodes[row..row + size].fill(Node::Empty(state).encode());
                 }
             }
-            return;
+            return true;
         }
-        let axis = (0..3).max_by_key(|&axis| size(axis)).unwrap_or(0);
-        if size(axis) <= 1 {
-            found.push((self.voxel(block.low), content));
-            return;
-        }
-        let middle = block.low[axis] + size(axis) / 2;
+        let axis = (0..3).max_by_key(|&axis| block.size(axis)).unwrap_or(0);
+        let middle = block.low[axis] + block.size(axis) / 2;
         let (mut lower, mut upper) = (block, block);
         lower.high[axis] = middle;
         upper.low[axis] = middle;
         for half in [lower, upper] {
             let cell = self.block_bounds(half).inflated(self.content_margin());
-            let part = subdivide.restrict(&content, &cell);
-            self.divide(half, part, subdivide, found);
+            let part = subdivide.restrict(content, &cell);
+            let bytes = subdivide.bytes(&part) + Building::<S::Content>::BESIDE;
+            if !building.take(bytes) {
+                return false;
+            }
+            let is_occupied = matches!(subdivide.describe(&part), Cell::Occupied { .. });
+            if is_occupied && half.is_voxel() {
+                building.found.push((self.voxel(half.low), part));
+                continue;
+            }
+            if !self.divide(half, &part, subdivide, building) {
+                return false;
+            }
+            building.bytes -= bytes;
         }
+        true
     }
 
     /// How much larger than itself a voxel is when its contents are decided.
@@ -194,6 +267,27 @@ impl Grid {
     #[must_use]
     pub fn bytes(&self) -> u64 {
         size_of_val(self.nodes.as_slice()) as u64
+    }
+
+    /// The most bytes that nodes and contents took while the grid was built.
+    #[must_use]
+    pub const fn peak_bytes(&self) -> u64 {
+        self.peak_bytes
+    }
+
+    /// Visits all voxels with their indices and boxes; x runs fastest.
+    pub fn visit_voxels(&self, mut visit: impl FnMut([u32; 3], Aabb, Node)) {
+        let [ni, nj, nk] = self.resolution;
+        for k in 0..nk {
+            for j in 0..nj {
+                for i in 0..ni {
+                    let low = [i, j, k];
+                    let high = low.map(|n| n + 1);
+                    let node = Node::decode(self.nodes[self.voxel(low)]);
+                    visit(low, self.block_bounds(Block { low, high }), node);
+                }
+            }
+        }
     }
 
     /// The node of the voxel that holds `point`, `None` outside the box.

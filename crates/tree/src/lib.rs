@@ -9,12 +9,16 @@ pub mod cell_tree;
 pub mod encoding;
 mod grid;
 mod partition;
+mod tally;
 pub mod traversal;
 pub mod triangle_cube;
 pub mod wide_tree;
 
-pub use cell_tree::{Cell, CellTree, CellTreeStats, Criteria, Node, Subdivide, WalkStack};
-pub use encoding::LvsiStore;
+pub use cell_tree::{
+    Cell, CellTree, CellTreeStats, Criteria, Node, Subdivide, WalkStack, filled_share,
+};
+pub use encoding::{LvsiStats, LvsiStore, LvsiTable, TableSize};
 pub use grid::Grid;
-pub use partition::{Division, Encoding, Partition, PartitionStats, Traversal, WalkMemory};
+pub use partition::{Division, Encoding, Leaf, Partition, PartitionStats, Traversal, WalkMemory};
+pub use tally::Tally;
 pub use wide_tree::{WalkCost, WideTree, WideTreeConfig, WideTreeError, WideTreeStats};

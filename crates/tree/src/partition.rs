@@ -1,14 +1,14 @@
 //! A partition of space into cells, kept and walked in one of several ways: the table of what can be
 //! combined.
 
-use octray_math::{Aabb, DVec3, Interval, Ray};
+use octray_math::{Aabb, CellKey, DVec3, Interval, Ray};
 
 use crate::cell_tree::{
     CellTree, CellTreeStats, Criteria, Node, Subdivide, WalkStack, enclosing_cube,
 };
-use crate::encoding::{Lvsi, LvsiStats, LvsiStore, TableSize};
+use crate::encoding::{Lvsi, LvsiStats, LvsiStore, LvsiTable};
 use crate::grid::Grid;
-use crate::traversal::{LeafSearch, Steps, TreePath};
+use crate::traversal::{BeamMemory, LeafSearch, Steps, TreePath};
 
 /// How an octree is kept.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -30,7 +30,7 @@ pub enum Traversal {
     FujimotoIwata,
     /// [`LeafSearch::walk_units`].
     Sung,
-    /// Neighbouring rays together; a ray alone as with [`Traversal::Ordered`].
+    /// Neighbouring rays together: [`CellTree::enter`]; a ray alone as with [`Traversal::Ordered`].
     Beam,
 }
 
@@ -87,6 +87,7 @@ pub struct Partition {
 #[derive(Clone, Debug, PartialEq)]
 enum Cells {
     Ordered(CellTree),
+    Beam(CellTree),
     FujimotoIwata(CellTree),
     Sung(CellTree),
     Lvsi(Lvsi),
@@ -96,8 +97,8 @@ enum Cells {
 /// What was built.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct PartitionStats {
-    /// Cells by kind, with the bytes of the nodes as they are kept and of the contents. Of a grid:
-    /// voxels, at depth 0.
+    /// Cells by kind, with the bytes of the nodes (or the hash table, or the voxels) as they are kept
+    /// and of the contents. Of a grid: voxels, at depth 0.
     pub cells: CellTreeStats,
     /// The hash table, if there is one.
     pub lvsi: Option<LvsiStats>,
@@ -105,17 +106,39 @@ pub struct PartitionStats {
     pub resolution: Option<[u32; 3]>,
 }
 
+/// A leaf of an octree, or a voxel of a grid.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Leaf {
+    /// Depth and indices; of a voxel, depth 0 and its indices in the grid.
+    pub key: CellKey,
+    /// The cell itself, without the margin of its contents.
+    pub bounds: Aabb,
+    /// Empty or occupied.
+    pub node: Node,
+}
+
 /// Working memory of a walk.
 #[derive(Clone, Debug, Default)]
 pub struct WalkMemory {
     stack: WalkStack,
     path: TreePath,
+    beam: BeamMemory,
+    /// Whether the lines to come are those that `beam` was made for.
+    in_beam: bool,
+}
+
+impl WalkMemory {
+    /// The lines to come are others than those of the run that entered last.
+    pub const fn leave(&mut self) {
+        self.in_beam = false;
+    }
 }
 
 impl Partition {
     /// Divides the space around `bounds`; returns the contents of the occupied cells too.
     ///
-    /// A grid is refined as far as `criteria` give memory. Works inside the current thread pool; the
+    /// A grid is refined as far as `criteria` give memory. `table` says how large a hash table is,
+    /// where there is one. Works inside the current thread pool; the
     /// result does not depend on it. An invalid combination ([`Division::objection`]) is built as its
     /// nearest valid one.
     pub fn build<S: Subdivide>(
@@ -124,10 +147,12 @@ impl Partition {
         subdivide: &S,
         division: Division,
         criteria: &Criteria,
+        table: LvsiTable,
     ) -> (Self, Vec<S::Content>) {
         match division {
             Division::Octree(encoding, traversal) => {
-                Self::octree(bounds, content, subdivide, (encoding, traversal), criteria)
+                let how = (encoding, traversal, table);
+                Self::octree(bounds, content, subdivide, how, criteria)
             }
             Division::Grid(resolution) => {
                 Self::grid(bounds, content, subdivide, resolution, criteria)
@@ -139,7 +164,7 @@ impl Partition {
         bounds: &Aabb,
         content: S::Content,
         subdivide: &S,
-        (encoding, traversal): (Encoding, Traversal),
+        (encoding, traversal, size): (Encoding, Traversal, LvsiTable),
         criteria: &Criteria,
     ) -> (Self, Vec<S::Content>) {
         let mut criteria = *criteria;
@@ -154,13 +179,18 @@ impl Partition {
         };
         let bounds = *tree.root();
         let cells = match (encoding, traversal) {
-            (Encoding::Tree, Traversal::Ordered | Traversal::Beam) => Cells::Ordered(tree),
+            (Encoding::Tree, Traversal::Ordered) => Cells::Ordered(tree),
+            (Encoding::Tree, Traversal::Beam) => Cells::Beam(tree),
             (Encoding::Tree, Traversal::FujimotoIwata) => Cells::FujimotoIwata(tree),
             (Encoding::Tree, Traversal::Sung) => Cells::Sung(tree),
             (Encoding::Lvsi(store), _) => {
-                let table = Lvsi::new(&tree, store, TableSize::Prime);
+                let table = Lvsi::new(&tree, store, size);
                 let lvsi = table.stats();
                 stats.cells.bytes = stats.cells.bytes - tree.node_bytes() + lvsi.bytes;
+                stats.cells.node_bytes = lvsi.bytes;
+                // Tree and table are there together for a while.
+                let both = stats.cells.bytes + tree.node_bytes();
+                stats.cells.peak_bytes = stats.cells.peak_bytes.max(both);
                 stats.lvsi = Some(lvsi);
                 Cells::Lvsi(table)
             }
@@ -193,19 +223,33 @@ impl Partition {
             Some(n) => [n.clamp(1, Grid::MAX_RESOLUTION); 3],
             None => Grid::resolution_for(&bounds, parts, limit),
         };
-        let (grid, contents) = Grid::build(bounds, content, subdivide, resolution);
-        let held: u64 = contents.iter().map(|c| subdivide.bytes(c)).sum();
-        let voxels = resolution.iter().map(|n| u64::from(*n)).product::<u64>();
-        let stats = PartitionStats {
+        let (grid, contents) = Grid::build(
+            bounds,
+            content,
+            subdivide,
+            resolution,
+            criteria.memory_limit,
+        );
+        let mut stats = PartitionStats {
             cells: CellTreeStats {
-                empty: voxels - grid.occupied(),
-                occupied: grid.occupied(),
-                bytes: grid.bytes() + held,
+                bytes: grid.bytes(),
+                node_bytes: grid.bytes(),
+                peak_bytes: grid.peak_bytes(),
+                stopped_by_memory: grid.resolution() != resolution,
                 ..CellTreeStats::default()
             },
-            resolution: Some(resolution),
+            resolution: Some(grid.resolution()),
             ..PartitionStats::default()
         };
+        for content in &contents {
+            stats.cells.bytes += subdivide.bytes(content);
+            if let crate::Cell::Occupied { parts, .. } = subdivide.describe(content) {
+                stats.cells.count_leaf(0, Some(parts));
+            }
+        }
+        let voxels: u64 = grid.resolution().into_iter().map(u64::from).product();
+        stats.cells.empty = voxels - grid.occupied();
+        stats.cells.empty_by_depth = vec![stats.cells.empty];
         let partition = Self {
             bounds,
             cells: Cells::Grid(grid),
@@ -229,11 +273,34 @@ impl Partition {
     /// The structure as it lies in memory, for hashing and comparing.
     pub fn words(&self) -> Box<dyn Iterator<Item = u32> + '_> {
         match &self.cells {
-            Cells::Ordered(tree) | Cells::FujimotoIwata(tree) | Cells::Sung(tree) => {
-                Box::new(tree.words())
-            }
+            Cells::Ordered(tree)
+            | Cells::Beam(tree)
+            | Cells::FujimotoIwata(tree)
+            | Cells::Sung(tree) => Box::new(tree.words()),
             Cells::Lvsi(table) => Box::new(table.words()),
             Cells::Grid(grid) => Box::new(grid.words()),
+        }
+    }
+
+    fn leaf(&self, key: CellKey, node: Node) -> Leaf {
+        let bounds = key.bounds(&self.bounds);
+        Leaf { key, bounds, node }
+    }
+
+    /// Visits the leaves, or voxels: of a hash table, those it stores.
+    pub fn visit_leaves(&self, mut visit: impl FnMut(Leaf)) {
+        match &self.cells {
+            Cells::Ordered(tree)
+            | Cells::FujimotoIwata(tree)
+            | Cells::Sung(tree)
+            | Cells::Beam(tree) => {
+                tree.visit_leaves(|key, node| visit(self.leaf(key, node)));
+            }
+            Cells::Lvsi(table) => table.visit_leaves(|key, node| visit(self.leaf(key, node))),
+            Cells::Grid(grid) => grid.visit_voxels(|index, bounds, node| {
+                let key = CellKey { depth: 0, index };
+                visit(Leaf { key, bounds, node });
+            }),
         }
     }
 
@@ -242,11 +309,34 @@ impl Partition {
     #[must_use]
     pub fn locate(&self, point: DVec3) -> Option<Node> {
         match &self.cells {
-            Cells::Ordered(tree) | Cells::FujimotoIwata(tree) | Cells::Sung(tree) => {
-                tree.locate(point).map(|(_, node)| node)
-            }
+            Cells::Ordered(tree)
+            | Cells::Beam(tree)
+            | Cells::FujimotoIwata(tree)
+            | Cells::Sung(tree) => tree.locate(point).map(|(_, node)| node),
             Cells::Lvsi(table) => table.locate(&self.bounds, point),
             Cells::Grid(grid) => grid.locate(point),
+        }
+    }
+
+    /// Whether neighbouring rays travel together: then [`Partition::enter`] is worth its call.
+    #[must_use]
+    pub const fn has_beams(&self) -> bool {
+        matches!(self.cells, Cells::Beam(_))
+    }
+
+    /// Takes a run of neighbouring rays through the upper cells together, each with the part of it
+    /// that counts. Until [`WalkMemory::leave`], all walks with this memory must be of these rays and
+    /// within those parts. Returns what it cost all of them together; does nothing without beams.
+    pub fn enter(&self, rays: &[(Ray, Interval)], memory: &mut WalkMemory) -> Steps {
+        memory.in_beam = false;
+        let Cells::Beam(tree) = &self.cells else {
+            return Steps::default();
+        };
+        let entered = tree.enter(rays, &mut memory.beam);
+        memory.in_beam = entered.is_some();
+        Steps {
+            cells: entered.unwrap_or(0),
+            lookups: 0,
         }
     }
 
@@ -264,6 +354,14 @@ impl Partition {
     ) -> Steps {
         match &self.cells {
             Cells::Ordered(tree) => Steps {
+                cells: tree.walk(ray, within, &mut memory.stack, visit),
+                lookups: 0,
+            },
+            Cells::Beam(tree) if memory.in_beam => Steps {
+                cells: tree.walk_from(&memory.beam, ray, within, &mut memory.stack, visit),
+                lookups: 0,
+            },
+            Cells::Beam(tree) => Steps {
                 cells: tree.walk(ray, within, &mut memory.stack, visit),
                 lookups: 0,
             },

@@ -5,13 +5,16 @@
 //! what to test, one `f64` function per shape decides, and ties go to the lowest face.
 
 mod batch;
+mod beam;
 mod chords;
 mod faces;
+mod figures;
 mod interact;
 mod line;
 mod method;
 mod query;
 mod sheets;
+mod slice;
 mod solids;
 mod start;
 mod surfaces;
@@ -19,6 +22,7 @@ mod world;
 
 pub use batch::{Batch, BatchError, Lists, RayRow, row_query};
 pub use chords::{Chord, ChordEnd, Overlaps};
+pub use figures::{CellsOf, MemoryStats, WorldCell};
 pub use method::{Method, MethodError};
 pub use query::{Counters, Departure, Hit, RayQuery, Region, SurfaceHit};
 pub use surfaces::{NearCoincidence, SurfaceReport};
@@ -27,6 +31,6 @@ pub use world::{World, WorldConfig, WorldError, WorldStats};
 pub use octray_geometry::Membership;
 pub use octray_geometry::mesh::TriangleMarks;
 pub use octray_tree::{
-    CellTreeStats, Criteria, Division, Encoding, LvsiStore, PartitionStats, Traversal,
-    WideTreeConfig, WideTreeError, WideTreeStats,
+    CellTreeStats, Criteria, Division, Encoding, LvsiStats, LvsiStore, LvsiTable, PartitionStats,
+    TableSize, Tally, Traversal, WideTreeConfig, WideTreeError, WideTreeStats,
 };

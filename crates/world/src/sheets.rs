@@ -48,6 +48,7 @@ fn search(config: &WorldConfig) -> TriangleSearch {
         (Method::Boxes, _) => TriangleSearch::Boxes,
         (_, Some(division)) => TriangleSearch::Cells {
             division,
+            table: config.table,
             membership: method.membership(),
             criteria: config.criteria,
         },

@@ -96,3 +96,119 @@ def scene_argument(function: Callable[..., Any]) -> Callable[..., Any]:
     ):
         function = add(function)
     return function
+
+
+def picture_options(function: Callable[..., Any]) -> Callable[..., Any]:
+    """Add the options about which picture of a scene is rendered."""
+    for add in reversed(
+        (
+            click.option("--size", metavar="WxH", callback=parse_size, help="Size in pixels."),
+            click.option(
+                "--spp",
+                type=click.IntRange(min=1),
+                default=1,
+                show_default=True,
+                help="Samples per pixel; 1 is the pixel's centre.",
+            ),
+            click.option(
+                "--crop",
+                metavar="X0,Y0,X1,Y1",
+                callback=parse_crop,
+                help="Render only these pixels (row 0 at the top).",
+            ),
+            click.option(
+                "--viewall", is_flag=True, help="Move the camera to where it sees everything."
+            ),
+            click.option(
+                "--max-depth",
+                type=click.IntRange(min=1),
+                metavar="N",
+                help="Generations of rays; 1 is without mirrors and glass.",
+            ),
+            click.option(
+                "--threshold",
+                type=click.FloatRange(min=0),
+                metavar="X",
+                help="Rays that add less than this to a pixel are not followed.",
+            ),
+        )
+    ):
+        function = add(function)
+    return function
+
+
+def parse_cost(
+    _ctx: click.Context, _param: click.Parameter, value: str | None
+) -> float | str | None:
+    """``off``, or the cost of entering a cell."""
+    if value is None or value == "off":
+        return value
+    try:
+        cost = float(value)
+    except ValueError:
+        cost = -1.0
+    if not 0 <= cost < float("inf"):
+        raise click.BadParameter(f"{value!r} is neither off nor a number, 0 or more")
+    return cost
+
+
+def tree_options(function: Callable[..., Any]) -> Callable[..., Any]:
+    """Add the options about how trees are divided and kept; see ``tree_values``."""
+    for add in reversed(
+        (
+            click.option(
+                "--tree-objects",
+                type=click.IntRange(1, 2**32 - 1),
+                metavar="N",
+                help="Leave cells of at most N surfaces undivided.",
+            ),
+            click.option(
+                "--tree-depth",
+                type=click.IntRange(0, 21),
+                metavar="N",
+                help="Deepest level of the octree over solids; 16 by default.",
+            ),
+            click.option(
+                "--tree-cost",
+                callback=parse_cost,
+                metavar="X",
+                help="Divide where rays get cheaper, if entering a cell costs as much as X planes;"
+                " 4 by default. off: whatever it costs.",
+            ),
+            click.option(
+                "--tree-share",
+                type=click.FloatRange(0, 1),
+                metavar="X",
+                help="Leave cells undivided of which boxes of objects fill more than the share X.",
+            ),
+            click.option(
+                "--tree-memory",
+                type=click.IntRange(0, 2**40),
+                metavar="MIB",
+                help="Most memory of an octree in MiB; what does not fit stays undivided.",
+            ),
+            click.option(
+                "--lvsi-table",
+                type=click.Choice(["prime", "power-of-two"]),
+                help="Sizes of hash tables; prime by default.",
+            ),
+            click.option(
+                "--lvsi-load",
+                type=click.FloatRange(1 / 64, 64),
+                metavar="X",
+                help="Rows used for each row of a hash table; 0.75 by default.",
+            ),
+        )
+    ):
+        function = add(function)
+    return function
+
+
+def tree_values(options: dict[str, Any]) -> dict[str, Any]:
+    """Give what ``tree_options`` asked for as keywords of ``Scene.prepare``."""
+    names = ("objects", "depth", "cost", "share", "memory")
+    values = {f"tree_{name}": options[f"tree_{name}"] for name in names}
+    values |= {name: options[name] for name in ("lvsi_table", "lvsi_load")}
+    if values["tree_memory"] is not None:
+        values["tree_memory"] <<= 20
+    return values

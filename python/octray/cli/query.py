@@ -17,6 +17,8 @@ from octray.cli.options import (
     quiet_option,
     scene_argument,
     threads_option,
+    tree_options,
+    tree_values,
 )
 from octray.cli.output import check_place
 from octray.cli.progress import Progress, duration
@@ -70,6 +72,7 @@ MODES = ("first", "all", "count", "any", "inside")
 )
 @click.option("--normals", is_flag=True, help="For first and all: unit normals too.")
 @accel_option
+@tree_options
 @threads_option
 @progress_option
 @quiet_option
@@ -160,7 +163,7 @@ class _Query:
         style: Style = "none" if self.options["quiet"] else self.options["progress"]
         done = 0
         try:
-            scene.prepare(**self.method)
+            scene.prepare(**self.method, **tree_values(self.options))
             with self.writer as writer, Progress("query", style) as progress:
                 for columns, rows in self._answers(scene):
                     writer.add(columns)

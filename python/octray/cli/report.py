@@ -73,9 +73,40 @@ class Report:
         lines = [f"  rays {rays}", f"  tests per ray {tests}", f"  threads {rendering['threads']}"]
         for name, tree in rendering["trees"].items():
             if tree is not None:
-                figures = ", ".join(f"{key} {value}" for key, value in tree.items())
-                lines.append(f"  tree of {name}: {figures}")
+                lines.append(f"  tree of {name}: {_flat(tree)}")
+        cells = rendering["trees"]["cells"]
+        if cells is not None:
+            lines += _details_of_cells(cells)
+        parts = {k: v for k, v in rendering["memory"].items() if k != "peak_bytes" and v}
+        lines.append("  bytes " + ", ".join(f"{v} {k}" for k, v in parts.items()))
         peak = rendering["memory"]["peak_bytes"]
         if peak is not None:
             lines.append(f"  memory {peak / 2**20:.0f} MiB at most")
         return "\n".join(lines)
+
+
+def _flat(figures: dict[str, Any]) -> str:
+    """Give the figures that are single values."""
+    return ", ".join(
+        f"{key} {value}"
+        for key, value in figures.items()
+        if not isinstance(value, list | tuple | dict | type(None))
+    )
+
+
+def _details_of_cells(cells: dict[str, Any]) -> list[str]:
+    """Give leaves by depth and by what they hold."""
+    lines = []
+    if cells["resolution"] is not None:
+        lines.append("    voxels " + " x ".join(str(n) for n in cells["resolution"]))
+    else:
+        for kind in ("empty", "occupied"):
+            numbers = cells[f"{kind}_by_depth"]
+            at = (f"{count} at {depth}" for depth, count in enumerate(numbers) if count)
+            lines.append(f"    {kind} by depth: {', '.join(at) or 'none'}")
+    for what in ("objects", "parts"):
+        tally = cells[f"{what}_per_leaf"]
+        lines.append(f"    {what} in a leaf: mean {tally['mean']:.3g}, at most {tally['max']}")
+    if cells["lvsi"] is not None:
+        lines.append(f"    hash table: {_flat(cells['lvsi'])}")
+    return lines

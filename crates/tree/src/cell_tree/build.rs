@@ -4,6 +4,7 @@
 use octray_math::{Aabb, CellKey, MAX_DEPTH};
 use rayon::prelude::*;
 
+use super::criteria::Criteria;
 use super::{Cell, CellTree, CellTreeStats, Node};
 
 /// Says what cells contain.
@@ -21,44 +22,12 @@ pub trait Subdivide: Sync {
 
     /// The memory that the contents will take in the finished tree.
     fn bytes(&self, content: &Self::Content) -> u64;
-}
 
-/// When to divide.
-///
-/// A cell is divided when the expected cost of a ray that meets it falls: a ray that meets a cube
-/// meets each of its octants with probability 1/4 (the ratio of surface areas, MacDonald & Booth
-/// 1990). A cell of many parts may be divided a few times without gain, because many faces through
-/// one octant need more than one division to come apart. (One part alone never comes apart, and
-/// following it without gain would fill its whole surface with the smallest cells.)
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Criteria {
-    /// No cell lies deeper; at most 21.
-    pub max_depth: u32,
-    /// Division stops before nodes and contents take more bytes.
-    pub memory_limit: u64,
-    /// It also stops when they take more than this many bytes for each part of the root's contents
-    /// (beyond [`Criteria::FREE_BYTES`]): surfaces that hardly come apart, like the planes of a finely
-    /// faceted ball, would be divided for ever smaller gains.
-    pub bytes_per_part: u64,
-    /// Cost of entering a cell, in units of one plane intersected with a line. The default was
-    /// measured: a ray is as fast as with 1.5, the tree a tenth of the size.
-    pub visit_cost: f64,
-}
-
-impl Default for Criteria {
-    fn default() -> Self {
-        Self {
-            max_depth: 16,
-            memory_limit: 4 << 30,
-            bytes_per_part: 512,
-            visit_cost: 4.0,
-        }
+    /// The share of the cell's volume that its objects occupy, for [`Criteria::max_share`]; see
+    /// [`super::filled_share`]. Things without a volume occupy none.
+    fn share(&self, _content: &Self::Content, _cell: &Aabb) -> f64 {
+        0.0
     }
-}
-
-impl Criteria {
-    /// Any tree may take this many bytes, if the memory limit allows.
-    pub const FREE_BYTES: u64 = 8 << 20;
 }
 
 /// How often in a row a cell may be divided without gain, and how many parts it must have.
@@ -71,11 +40,35 @@ const EMPTY_SHARE: f64 = 0.2;
 
 /// Eight words.
 const BLOCK_BYTES: u64 = 32;
+/// The cells of a level are worked on in batches of so many, or of so many bytes of contents, so that
+/// not all children of a level exist before one knows whether there is room for them.
+const BATCH_CELLS: usize = 1 << 14;
+const BATCH_BYTES: u64 = 16 << 20;
+/// What allocating the contents of a cell costs beside the contents.
+const ALLOCATION_BYTES: u64 = 64;
 
 struct Frontier<C> {
     key: CellKey,
     content: C,
     futile: u8,
+}
+
+/// Sizes of contents.
+struct Sizes<'a, S>(&'a S);
+
+impl<S: Subdivide> Sizes<'_, S> {
+    /// What the builder keeps beside the contents of every cell that is not empty.
+    const BESIDE: u64 = size_of::<Frontier<S::Content>>() as u64 + ALLOCATION_BYTES;
+
+    /// In the finished tree.
+    fn kept(&self, cells: &[Frontier<S::Content>]) -> u64 {
+        cells.iter().map(|c| self.0.bytes(&c.content)).sum()
+    }
+
+    /// While the tree is built.
+    fn held(&self, cells: &[Frontier<S::Content>]) -> u64 {
+        self.kept(cells) + cells.len() as u64 * Self::BESIDE
+    }
 }
 
 impl CellTree {
@@ -104,9 +97,14 @@ impl CellTree {
             Cell::Empty(_) => 0,
             Cell::Occupied { parts, .. } => u64::from(parts),
         };
-        let size_limit = Criteria::FREE_BYTES + criteria.bytes_per_part.saturating_mul(parts);
-        let budget = criteria.memory_limit.min(size_limit);
+        let limits = Limits {
+            kept: criteria.size_limit(parts),
+            held: criteria.memory_limit.min(Criteria::LARGEST_MEMORY),
+        };
+        let sizes = Sizes(subdivide);
         let mut leaves = Vec::new();
+        // Of finished leaves, as held.
+        let mut leaf_bytes = 0;
         let mut level = vec![Frontier {
             key: CellKey::ROOT,
             content: contents,
@@ -115,41 +113,48 @@ impl CellTree {
         // Where the words of this level go: 8 per block of the level above, the root by itself.
         let mut first_block = None;
         loop {
-            let mut divided: Vec<Option<Division<S::Content>>> = level
-                .par_iter()
-                .map(|cell| {
-                    (cell.key.depth < max_depth)
-                        .then(|| divide(cell, &root, subdivide, criteria))
-                        .flatten()
-                })
-                .collect();
             // What the tree takes if nothing more is divided.
-            let undivided: u64 = level.iter().map(|c| subdivide.bytes(&c.content)).sum();
-            let bytes_left = budget.saturating_sub(tree.stats.bytes + undivided);
-            let refused = keep_most_useful(&mut divided, bytes_left);
-            tree.stats.stopped_by_size += refused;
-            tree.stats.stopped_by_memory |= refused > 0 && budget == criteria.memory_limit;
+            let held = tree.node_bytes() + leaf_bytes + sizes.held(&level);
+            let room = Limits {
+                kept: limits
+                    .kept
+                    .saturating_sub(tree.stats.bytes + sizes.kept(&level)),
+                held: limits.held.saturating_sub(held),
+            };
+            let mut divided = Vec::new();
+            if level[0].key.depth < max_depth {
+                let found = divide_level(&level, &root, subdivide, criteria, &room);
+                divided = found.cells;
+                tree.stats.stopped_by_size += found.refused;
+                tree.stats.stopped_by_memory |= found.out_of_memory;
+                tree.stats.peak_bytes = tree.stats.peak_bytes.max(held + found.peak);
+            }
+            tree.stats.peak_bytes = tree.stats.peak_bytes.max(held);
+            divided.resize_with(level.len(), || None);
             let mut next = Vec::new();
             let level_blocks = tree.blocks.len();
             for (index, (cell, division)) in level.into_iter().zip(divided).enumerate() {
-                tree.stats.depth = tree.stats.depth.max(cell.key.depth);
+                let depth = cell.key.depth;
+                tree.stats.depth = tree.stats.depth.max(depth);
                 let node = match (subdivide.describe(&cell.content), division) {
                     (Cell::Empty(state), _) => {
-                        tree.stats.empty += 1;
+                        tree.stats.count_leaf(depth, None);
                         Node::Empty(state)
                     }
-                    (Cell::Occupied { .. }, Some(division)) => {
+                    (Cell::Occupied { .. }, Some(children)) => {
                         let block = tree.blocks.len() as u32;
                         tree.blocks.push([0; 8]);
                         tree.stats.bytes += BLOCK_BYTES;
                         tree.stats.divided += 1;
-                        next.extend(division.children);
+                        next.extend(children);
                         Node::Divided(block)
                     }
-                    (Cell::Occupied { .. }, _) => {
-                        tree.stats.occupied += 1;
-                        tree.stats.stopped_by_depth += u64::from(cell.key.depth == max_depth);
-                        tree.stats.bytes += subdivide.bytes(&cell.content);
+                    (Cell::Occupied { parts, .. }, _) => {
+                        tree.stats.count_leaf(depth, Some(parts));
+                        tree.stats.stopped_by_depth += u64::from(depth == max_depth);
+                        let bytes = subdivide.bytes(&cell.content);
+                        tree.stats.bytes += bytes;
+                        leaf_bytes += bytes + Sizes::<S>::BESIDE;
                         leaves.push(cell.content);
                         Node::Occupied(leaves.len() as u32 - 1)
                     }
@@ -163,6 +168,7 @@ impl CellTree {
                 }
             }
             if next.is_empty() {
+                tree.stats.node_bytes = tree.node_bytes();
                 return (tree, leaves);
             }
             first_block = Some(level_blocks);
@@ -171,34 +177,111 @@ impl CellTree {
     }
 }
 
+/// Bytes that may be taken: in the finished tree, and while it is built.
+#[derive(Clone, Copy)]
+struct Limits {
+    kept: u64,
+    held: u64,
+}
+
 /// A cell that is worth dividing.
 struct Division<C> {
-    children: Vec<Frontier<C>>,
-    /// What all rays through the root save by it, in expectation.
+    /// Absent once there seemed to be no room for them.
+    children: Option<Vec<Frontier<C>>>,
+    /// What all rays through the root save by it, in expectation; without costs, how many parts it
+    /// tells apart.
     gain: f64,
     /// What it adds to the tree, net of the cell's own contents.
-    bytes: u64,
+    kept: u64,
+    /// What it adds while the tree is built.
+    held: u64,
+}
+
+/// The children of those cells of a level that are divided.
+struct DividedLevel<C> {
+    cells: Vec<Option<Vec<Frontier<C>>>>,
+    /// How many were worth it and found no room.
+    refused: u64,
+    /// Whether it was memory that they found no room in.
+    out_of_memory: bool,
+    /// The most bytes held beside what there was before.
+    peak: u64,
+}
+
+/// Divides the cells of a level that are worth it; if there is no room for all, those that save most.
+fn divide_level<S: Subdivide>(
+    level: &[Frontier<S::Content>],
+    root: &Aabb,
+    subdivide: &S,
+    criteria: &Criteria,
+    room: &Limits,
+) -> DividedLevel<S::Content> {
+    let mut divided: Vec<Option<Division<S::Content>>> = Vec::with_capacity(level.len());
+    let (mut held, mut peak) = (0, 0);
+    let mut rest = level;
+    while !rest.is_empty() {
+        let mut bytes = 0;
+        let fits = rest.iter().take(BATCH_CELLS).take_while(|cell| {
+            let before = bytes;
+            bytes += subdivide.bytes(&cell.content);
+            before < BATCH_BYTES
+        });
+        let (batch, later) = rest.split_at(fits.count());
+        rest = later;
+        let mut found: Vec<_> = batch
+            .par_iter()
+            .map(|cell| divide(cell, root, subdivide, criteria))
+            .collect();
+        let made: u64 = found.iter().flatten().map(|d| d.held).sum();
+        peak = peak.max(held + made);
+        for division in found.iter_mut().flatten() {
+            if held + division.held <= room.held {
+                held += division.held;
+            } else {
+                division.children = None;
+            }
+        }
+        divided.append(&mut found);
+    }
+    let refused_by_size = keep_most_useful(&mut divided, room.kept, |d| d.kept);
+    let refused_by_memory = keep_most_useful(&mut divided, room.held, |d| d.held);
+    // Children that were given up too early are made once more.
+    let children = |cell, division: Division<S::Content>| {
+        let made = division.children;
+        made.or_else(|| divide(cell, root, subdivide, criteria)?.children)
+    };
+    let cells = (level.par_iter().zip(divided))
+        .map(|(cell, division)| children(cell, division?))
+        .collect();
+    DividedLevel {
+        cells,
+        refused: refused_by_size + refused_by_memory,
+        out_of_memory: refused_by_memory > 0,
+        peak,
+    }
 }
 
 /// Drops the divisions with the smallest gain per byte until the rest fits; returns how many.
-fn keep_most_useful<C>(divided: &mut [Option<Division<C>>], bytes_left: u64) -> u64 {
-    let total: u64 = divided.iter().flatten().map(|d| d.bytes).sum();
+fn keep_most_useful<C>(
+    divided: &mut [Option<Division<C>>],
+    bytes_left: u64,
+    bytes: impl Fn(&Division<C>) -> u64,
+) -> u64 {
+    let total: u64 = divided.iter().flatten().map(&bytes).sum();
     if total <= bytes_left {
         return 0;
     }
+    let value = |d: &Division<C>| d.gain / bytes(d).max(1) as f64;
     let mut order: Vec<(f64, usize)> = divided
         .iter()
         .enumerate()
-        .filter_map(|(index, d)| {
-            d.as_ref()
-                .map(|d| (d.gain / (d.bytes.max(1)) as f64, index))
-        })
+        .filter_map(|(index, d)| d.as_ref().map(|d| (value(d), index)))
         .collect();
     order.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
     let mut kept = 0;
     let mut refused = 0;
     for (_, index) in order {
-        let bytes = divided[index].as_ref().map_or(0, |d| d.bytes);
+        let bytes = divided[index].as_ref().map_or(0, &bytes);
         if kept + bytes <= bytes_left {
             kept += bytes;
         } else {
@@ -209,7 +292,7 @@ fn keep_most_useful<C>(divided: &mut [Option<Division<C>>], bytes_left: u64) -> 
     refused
 }
 
-/// The eight children of an occupied cell, if dividing it pays.
+/// The eight children of an occupied cell, if the criteria divide it.
 fn divide<S: Subdivide>(
     cell: &Frontier<S::Content>,
     root: &Aabb,
@@ -219,6 +302,13 @@ fn divide<S: Subdivide>(
     let Cell::Occupied { cost, parts } = subdivide.describe(&cell.content) else {
         return None;
     };
+    let is_full = || {
+        let share = subdivide.share(&cell.content, &cell.key.bounds(root));
+        share > criteria.max_share
+    };
+    if parts <= criteria.max_parts || (criteria.max_share < 1.0 && is_full()) {
+        return None;
+    }
     let margin = root.size().x * CellTree::CONTENT_MARGIN;
     let child = |octant: u32| {
         let key = cell.key.child(octant);
@@ -243,8 +333,10 @@ fn divide<S: Subdivide>(
                 Cell::Occupied { cost, .. } => criteria.visit_cost + cost,
             };
     }
-    let saved = criteria.visit_cost + cost - expected;
-    if saved <= 0.0 {
+    let mut saved = criteria.visit_cost + cost - expected;
+    if !criteria.by_cost {
+        saved = f64::from(parts);
+    } else if saved <= 0.0 {
         if parts <= FUTILE_PARTS || cell.futile >= FUTILE_LIMIT {
             return None;
         }
@@ -252,12 +344,14 @@ fn divide<S: Subdivide>(
             child.futile = cell.futile + 1;
         }
     }
-    let contents: u64 = children.iter().map(|c| subdivide.bytes(&c.content)).sum();
+    let sizes = Sizes(subdivide);
     // A ray through the root meets a cell of depth d with probability 4^-d.
     let reach = libm::ldexp(1.0, -2 * cell.key.depth as i32);
+    let kept = BLOCK_BYTES + sizes.kept(&children);
     Some(Division {
-        children,
+        kept: kept.saturating_sub(subdivide.bytes(&cell.content)),
+        held: BLOCK_BYTES + sizes.held(&children),
+        children: Some(children),
         gain: saved.max(0.0) * reach,
-        bytes: (BLOCK_BYTES + contents).saturating_sub(subdivide.bytes(&cell.content)),
     })
 }

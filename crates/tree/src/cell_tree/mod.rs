@@ -4,6 +4,7 @@
 //! level, so the same scene gives the same bytes whatever built it. A node is one word.
 
 mod build;
+mod criteria;
 #[cfg(test)]
 pub(crate) mod points;
 #[cfg(test)]
@@ -12,8 +13,12 @@ mod walk;
 
 use octray_math::{Aabb, CellKey, DVec3};
 
-pub use build::{Criteria, Subdivide};
+use crate::Tally;
+
+pub use build::Subdivide;
+pub use criteria::{Criteria, filled_share};
 pub use walk::WalkStack;
+pub(crate) use walk::{Slabs, Waiting};
 
 /// What a cell is.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -52,7 +57,7 @@ impl Node {
     }
 
     /// Whether the word of a node says that it is empty.
-    const fn is_empty(word: u32) -> bool {
+    pub(crate) const fn is_empty(word: u32) -> bool {
         word & 3 == 0
     }
 
@@ -86,14 +91,47 @@ pub struct CellTreeStats {
     pub divided: u64,
     /// The deepest level that was reached; the root is 0.
     pub depth: u32,
+    /// Empty leaves of each depth.
+    pub empty_by_depth: Vec<u64>,
+    /// Occupied leaves of each depth.
+    pub occupied_by_depth: Vec<u64>,
+    /// How many parts the occupied cells hold.
+    pub parts: Tally,
     /// Bytes of nodes and contents.
     pub bytes: u64,
+    /// Bytes of the nodes alone, as they are kept.
+    pub node_bytes: u64,
+    /// The most bytes that nodes and contents took while they were made, with what the builder keeps
+    /// beside every cell.
+    pub peak_bytes: u64,
     /// Cells that were left undivided because the depth limit was reached.
     pub stopped_by_depth: u64,
     /// Cells that were left undivided because the tree had become large for what it holds.
     pub stopped_by_size: u64,
     /// Whether it was the memory limit that stopped them.
     pub stopped_by_memory: bool,
+}
+
+impl CellTreeStats {
+    /// Counts a leaf: of how many parts, if it is occupied.
+    pub(crate) fn count_leaf(&mut self, depth: u32, parts: Option<u32>) {
+        let by_depth = match parts {
+            None => {
+                self.empty += 1;
+                &mut self.empty_by_depth
+            }
+            Some(parts) => {
+                self.occupied += 1;
+                self.parts.add(u64::from(parts));
+                &mut self.occupied_by_depth
+            }
+        };
+        let depth = depth as usize;
+        if by_depth.len() <= depth {
+            by_depth.resize(depth + 1, 0);
+        }
+        by_depth[depth] += 1;
+    }
 }
 
 impl CellTree {

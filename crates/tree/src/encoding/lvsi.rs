@@ -34,15 +34,55 @@ pub enum LvsiStore {
     All,
 }
 
-/// How many rows the table has, given how many are used.
+/// What number the table size is.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum TableSize {
-    /// The first prime at or above 4/3 of the rows used.
+    /// The first prime at or above what the load asks for.
     #[default]
     Prime,
     /// The first power of two at or above it: the paper's hash function then sees only the low bits
     /// of `i`. Kept to show what that costs.
     PowerOfTwo,
+}
+
+/// How large the table is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LvsiTable {
+    /// What number its size is.
+    pub size: TableSize,
+    /// Rows used for each row of the table, in [`LvsiTable::LOADS`] (taken as the nearest in it); less
+    /// than asked for where the size is rounded up.
+    pub load: f64,
+}
+
+impl LvsiTable {
+    /// Loads that make sense, lowest and highest.
+    pub const LOADS: [f64; 2] = [1.0 / 64.0, 64.0];
+
+    /// The table size for so many rows.
+    fn size_for(self, rows: u64) -> u64 {
+        let [low, high] = Self::LOADS;
+        // No NaN gets through.
+        let load = if self.load >= low {
+            self.load.min(high)
+        } else {
+            low
+        };
+        let wanted = (libm::ceil(rows as f64 / load) as u64).max(1);
+        match self.size {
+            TableSize::Prime => (wanted..).find(|n| is_prime(*n)).unwrap_or(wanted),
+            TableSize::PowerOfTwo => wanted.next_power_of_two(),
+        }
+    }
+}
+
+impl Default for LvsiTable {
+    fn default() -> Self {
+        Self {
+            size: TableSize::Prime,
+            load: 0.75,
+        }
+    }
 }
 
 /// The answer of [`Lvsi::leaf_parent`].
@@ -104,10 +144,23 @@ const fn parent_of(key: CellKey) -> (u64, u32) {
     (number, key.depth)
 }
 
+/// The cell in a slot of a row: what [`parent_of`] and the slot were made from.
+fn child_of(parent: u64, depth: u32, slot: u32) -> CellKey {
+    let mask = (1 << depth) - 1;
+    let index = |axis: u32| {
+        let half = (parent >> (axis * depth) & mask) as u32;
+        half << 1 | slot >> axis & 1
+    };
+    CellKey {
+        depth,
+        index: [index(0), index(1), index(2)],
+    }
+}
+
 impl Lvsi {
     /// The leaves of a tree.
     #[must_use]
-    pub fn new(tree: &CellTree, store: LvsiStore, size: TableSize) -> Self {
+    pub fn new(tree: &CellTree, store: LvsiStore, size: LvsiTable) -> Self {
         let mut leaves: Vec<(CellKey, Node)> = Vec::new();
         tree.visit_leaves(|key, node| {
             if store == LvsiStore::All || matches!(node, Node::Occupied(_)) {
@@ -139,11 +192,7 @@ impl Lvsi {
                 row.slots[key.octant() as usize] = node.encode();
             }
         }
-        let wanted = (table.rows.len() as u64 * 4).div_ceil(3).max(1);
-        let size = match size {
-            TableSize::Prime => (wanted..).find(|n| is_prime(*n)).unwrap_or(wanted),
-            TableSize::PowerOfTwo => wanted.next_power_of_two(),
-        };
+        let size = size.size_for(table.rows.len() as u64);
         table.heads = vec![NO_ROW; size as usize];
         for index in (0..table.rows.len()).rev() {
             let head = (table.rows[index].parent % size) as usize;
@@ -186,6 +235,17 @@ impl Lvsi {
             key = at.parent();
         }
         Found::Nothing
+    }
+
+    /// Visits the stored leaves, by depth and then by the paper's numbers.
+    pub fn visit_leaves(&self, mut visit: impl FnMut(CellKey, Node)) {
+        for row in &self.rows {
+            for (slot, word) in (0_u32..).zip(row.slots) {
+                if word != ABSENT {
+                    visit(child_of(row.parent, row.depth, slot), Node::decode(word));
+                }
+            }
+        }
     }
 
     /// The leaf at a point of the cube `root`, `None` if none is stored there.
@@ -245,6 +305,15 @@ mod tests {
     use octray_math::MAX_DEPTH;
     use proptest::prelude::*;
 
+    const PRIME: LvsiTable = LvsiTable {
+        size: TableSize::Prime,
+        load: 0.75,
+    };
+    const TWO: LvsiTable = LvsiTable {
+        size: TableSize::PowerOfTwo,
+        ..PRIME
+    };
+
     fn point() -> impl Strategy<Value = DVec3> {
         let x = || -1.0..1.0f64;
         (x(), x(), x()).prop_map(|(x, y, z)| DVec3::new(x, y, z))
@@ -258,14 +327,14 @@ mod tests {
     #[test]
     fn the_root_and_its_first_child_share_a_row_number_and_are_told_apart() {
         let alone = tree(&[], 4);
-        let all = Lvsi::new(&alone, LvsiStore::All, TableSize::Prime);
+        let all = Lvsi::new(&alone, LvsiStore::All, PRIME);
         let mut rows = 0;
         assert_eq!(
             all.leaf_parent(CellKey::ROOT.child(0), &mut rows),
             Found::Leaf(CellKey::ROOT, Node::Empty(0))
         );
         assert_eq!(rows, 2);
-        let only_full = Lvsi::new(&alone, LvsiStore::Occupied, TableSize::Prime);
+        let only_full = Lvsi::new(&alone, LvsiStore::Occupied, PRIME);
         assert_eq!(
             only_full.leaf_parent(CellKey::ROOT.child(0), &mut rows),
             Found::Nothing
@@ -283,8 +352,8 @@ mod tests {
         // In a plane across x, where the hash function's lowest bits are all the same.
         let points: Vec<DVec3> = (0..3000).map(|_| DVec3::new(0.3, real(), real())).collect();
         let tree = tree(&points, 12);
-        let prime = Lvsi::new(&tree, LvsiStore::Occupied, TableSize::Prime).stats();
-        let two = Lvsi::new(&tree, LvsiStore::Occupied, TableSize::PowerOfTwo).stats();
+        let prime = Lvsi::new(&tree, LvsiStore::Occupied, PRIME).stats();
+        let two = Lvsi::new(&tree, LvsiStore::Occupied, TWO).stats();
         assert_eq!(prime.leaves, two.leaves);
         assert!(two.table_size >= prime.table_size);
         assert!(20 * two.heads_used < prime.heads_used, "{two:?} {prime:?}");
@@ -301,7 +370,7 @@ mod tests {
             max_depth in 1..=MAX_DEPTH,
         ) {
             let tree = tree(&points, max_depth);
-            for size in [TableSize::Prime, TableSize::PowerOfTwo] {
+            for size in [PRIME, TWO] {
                 let full = Lvsi::new(&tree, LvsiStore::Occupied, size);
                 let all = Lvsi::new(&tree, LvsiStore::All, size);
                 prop_assert_eq!(full.depth(), tree.stats().depth);

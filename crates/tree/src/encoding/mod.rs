@@ -2,4 +2,4 @@
 
 mod lvsi;
 
-pub use lvsi::{Found, Lvsi, LvsiStats, LvsiStore, TableSize};
+pub use lvsi::{Found, Lvsi, LvsiStats, LvsiStore, LvsiTable, TableSize};

@@ -5,7 +5,7 @@ use proptest::prelude::*;
 
 use super::{LeafSearch, Steps, TreePath};
 use crate::cell_tree::points::{Points, tree};
-use crate::encoding::{Lvsi, LvsiStore, TableSize};
+use crate::encoding::{Lvsi, LvsiStore, LvsiTable};
 use crate::{CellTree, Grid, Node, WalkStack};
 
 type Visits = Vec<(u32, Interval)>;
@@ -38,7 +38,7 @@ fn all_others(tree: &CellTree, ray: &Ray, within: Interval) -> Vec<(&'static str
         ("lvsi sung", LvsiStore::Occupied),
         ("lvsi-empty sung", LvsiStore::All),
     ] {
-        let table = Lvsi::new(tree, store, TableSize::Prime);
+        let table = Lvsi::new(tree, store, LvsiTable::default());
         run(name, &|visit| table.walk_units(root, ray, within, visit));
     }
     run("tree fujimoto-iwata", &|visit| {
@@ -56,7 +56,7 @@ fn a_grid_is_walked_through_the_voxels_that_the_line_meets() {
         DVec3::new(0.9, 0.1, 0.1),
         DVec3::new(0.9, -0.9, 0.4),
     ];
-    let (grid, contents) = Grid::build(box_, points.to_vec(), &Points, [8, 8, 4]);
+    let (grid, contents) = Grid::build(box_, points.to_vec(), &Points, [8, 8, 4], u64::MAX);
     assert_eq!(grid.occupied(), 4);
     let along = |origin: DVec3, direction: DVec3| {
         let mut found = Vec::new();
@@ -145,7 +145,7 @@ proptest! {
             prop_assert!(found.len() as u64 <= steps.cells);
         }
         let bounds = Aabb::new(DVec3::splat(-1.0), DVec3::ONE);
-        let (grid, contents) = Grid::build(bounds, points.clone(), &Points, [7, 5, 1 + max_depth]);
+        let (grid, contents) = Grid::build(bounds, points.clone(), &Points, [7, 5, 1 + max_depth], u64::MAX);
         let mut found: Vec<DVec3> = Vec::new();
         grid.walk(&ray, within, |leaf, _| {
             found.extend(&contents[leaf as usize]);

@@ -9,6 +9,7 @@ use octray_geometry::surface::{Side, Surface};
 use octray_math::Aabb;
 use octray_tree::{Cell, Subdivide};
 
+use super::operand_boxes::OperandBoxes;
 use super::{MeshSurface, Ranked};
 
 /// The contents of a cell, all expressions in one array.
@@ -103,6 +104,8 @@ pub(super) struct Cells<'a> {
     pub(super) ranked: &'a [Ranked],
     /// A box around each object, by rank.
     pub(super) bounds: &'a [Aabb],
+    /// Where shares of cells count.
+    pub(super) operands: Option<&'a OperandBoxes>,
 }
 
 impl Cells<'_> {
@@ -162,6 +165,11 @@ impl Subdivide for Cells<'_> {
             cost: content.surfaces.iter().map(|&s| self.cost(s)).sum(),
             parts: content.surfaces.len() as u32,
         }
+    }
+
+    fn share(&self, content: &Content, cell: &Aabb) -> f64 {
+        self.operands
+            .map_or(0.0, |boxes| boxes.share(content, cell))
     }
 
     fn bytes(&self, content: &Content) -> u64 {

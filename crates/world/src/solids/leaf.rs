@@ -130,6 +130,18 @@ impl Leaves {
         }
     }
 
+    /// Bytes of the lists of objects and surfaces.
+    pub(super) fn list_bytes(&self) -> u64 {
+        (size_of_val(self.leaves.as_slice())
+            + size_of_val(self.surfaces.as_slice())
+            + size_of_val(self.objects.as_slice())) as u64
+    }
+
+    /// Bytes of the expressions.
+    pub(super) fn expression_bytes(&self) -> u64 {
+        size_of_val(self.words.as_slice()) as u64
+    }
+
     /// Everything, for hashing and comparing.
     pub(super) fn words(&self) -> impl Iterator<Item = u32> + '_ {
         let leaves = self.leaves.iter().flat_map(|l| {

@@ -4,6 +4,7 @@ mod cells;
 mod interact;
 mod leaf;
 mod numbering;
+mod operand_boxes;
 mod prepare;
 mod roots;
 mod spans;
@@ -11,11 +12,11 @@ mod sweep;
 mod volumes;
 
 use octray_geometry::csg::Face;
-use octray_geometry::mesh::MeshSolid;
+use octray_geometry::mesh::{MeshSolid, TriangleTree};
 use octray_geometry::surface::Surface;
-use octray_math::Interval;
+use octray_math::{Interval, Ray};
 use octray_scene::ObjectId;
-use octray_tree::{CellTree, Node, Partition, PartitionStats};
+use octray_tree::{CellTree, Node, Partition};
 
 use leaf::LeafView;
 pub(crate) use leaf::Leaves;
@@ -24,8 +25,9 @@ use volumes::Volumes;
 
 pub(crate) use sweep::{Change, Interface, Passage};
 
+use crate::figures::Held;
 use crate::line::Line;
-use crate::{Counters, Region};
+use crate::{Counters, MemoryStats, Region};
 
 /// An object made of faces. Their order is the rank by which regions are decided: higher priority
 /// first, then the smaller object, then the later one.
@@ -85,6 +87,30 @@ struct LeafVisit<'a> {
 }
 
 impl Solids {
+    /// Whether neighbouring rays travel together.
+    pub(crate) fn has_beams(&self) -> bool {
+        self.cells.as_ref().is_some_and(Partition::has_beams)
+    }
+
+    /// Takes a run of rays, each with the part that counts, through the upper cells together; until
+    /// [`Solids::leave`], only lines of the run may be swept. Returns what it cost.
+    pub(crate) fn enter(&self, rays: &[(Ray, Interval)], scratch: &mut Scratch) -> Counters {
+        let Some(cells) = &self.cells else {
+            return Counters::default();
+        };
+        let steps = cells.enter(rays, &mut scratch.walk);
+        Counters {
+            cells: steps.cells,
+            lookups: steps.lookups,
+            ..Counters::default()
+        }
+    }
+
+    /// The run has been answered.
+    pub(crate) const fn leave(&self, scratch: &mut Scratch) {
+        scratch.walk.leave();
+    }
+
     /// Sweeps along the line, cell by cell and front to back.
     ///
     /// `visit` gets every change and returns the parameter beyond which nothing matters any more. A
@@ -257,8 +283,38 @@ impl Solids {
         self.ranked[rank as usize].priority
     }
 
-    pub(crate) fn partition_stats(&self) -> Option<&PartitionStats> {
-        self.cells.as_ref().map(Partition::stats)
+    /// The cells over the bounded objects.
+    pub(crate) const fn partition(&self) -> Option<&Partition> {
+        self.cells.as_ref()
+    }
+
+    /// What a leaf holds.
+    pub(crate) fn held(&self, leaf: u32) -> Held {
+        let view = self.leaves.get(leaf);
+        Held {
+            objects: view.objects.len() as u32,
+            parts: view.surfaces.len() as u32,
+        }
+    }
+
+    /// Memory by part.
+    pub(crate) fn memory(&self) -> MemoryStats {
+        let cells = self.cells.as_ref().map(|cells| &cells.stats().cells);
+        let meshes = || self.meshes.iter().map(|mesh| mesh.solid.triangles());
+        MemoryStats {
+            cells: cells.map_or(0, |stats| stats.node_bytes),
+            contents: self.leaves.list_bytes(),
+            expressions: self.leaves.expression_bytes(),
+            surfaces: size_of_val(self.surfaces.as_slice()) as u64,
+            faces: (size_of_val(self.faces.as_slice()) + size_of_val(self.face_owner.as_slice()))
+                as u64,
+            triangles: meshes().map(TriangleTree::bytes).sum(),
+            wide_trees: meshes()
+                .filter_map(TriangleTree::tree_stats)
+                .map(|stats| stats.bytes)
+                .sum(),
+            building: cells.map_or(0, |stats| stats.peak_bytes),
+        }
     }
 
     /// The bytes of the tree and its leaves, for hashing.

@@ -11,6 +11,7 @@ use octray_scene::{Object, ObjectId, Scene, Shape};
 use octray_tree::{Division, Encoding, Partition, WideTreeConfig};
 
 use super::cells::{Cells, Content};
+use super::operand_boxes::OperandBoxes;
 use super::volumes::Volumes;
 use super::{Leaves, MeshSurface, Ranked, Solids};
 use crate::{Method, WorldConfig};
@@ -88,6 +89,10 @@ impl Solids {
             .collect();
         // Faces are numbered in the order of the objects, ranks are a matter of this module.
         let mut lowering = Lowering::new(frame);
+        let by_share = config.criteria.max_share < 1.0;
+        if by_share {
+            lowering = lowering.with_operands();
+        }
         let mut lowered = Vec::with_capacity(candidates.len());
         let mut owners = Vec::new();
         for candidate in &candidates {
@@ -106,12 +111,13 @@ impl Solids {
         let LoweredScene {
             faces,
             surfaces,
-            meshes: operands,
+            meshes: mesh_operands,
+            operands,
             ..
         } = lowering.finish();
         let face_owner: Vec<u32> = owners.iter().map(|id| rank_of[id.0 as usize]).collect();
         let meshes = mesh_surfaces(
-            &operands,
+            &mesh_operands,
             &faces,
             &face_owner,
             &ranked,
@@ -155,6 +161,8 @@ impl Solids {
         let mut cells = None;
         let mut outer = root;
         let mut whole = None;
+        let operand_boxes =
+            by_share.then(|| OperandBoxes::new(&operands, &face_owner, &object_bounds));
         if let Some(division) = division.filter(|_| !bounds.is_empty()) {
             let restricting = Cells {
                 faces: &faces,
@@ -162,12 +170,19 @@ impl Solids {
                 meshes: &meshes,
                 ranked: &ranked,
                 bounds: &object_bounds,
+                operands: operand_boxes.as_ref(),
             };
             if matches!(division, Division::Octree(Encoding::Lvsi(_), _)) {
                 whole = Some(outer.clone());
             }
-            let (built, leaves) =
-                Partition::build(&bounds, outer, &restricting, division, &config.criteria);
+            let (built, leaves) = Partition::build(
+                &bounds,
+                outer,
+                &restricting,
+                division,
+                &config.criteria,
+                config.table,
+            );
             contents = leaves;
             cells = Some(built);
             outer = unbounded;

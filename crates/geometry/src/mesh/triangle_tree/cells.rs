@@ -22,7 +22,7 @@
 //! [`CellTree::CONTENT_MARGIN`]: octray_tree::CellTree::CONTENT_MARGIN
 
 use octray_math::{Aabb, DVec3, Interval, Ray};
-use octray_tree::{Criteria, Division, Partition, PartitionStats};
+use octray_tree::{Criteria, Division, LvsiTable, Partition, PartitionStats};
 
 use super::membership::{Touching, TriangleMarks};
 use super::search::{SearchCost, SearchMemory};
@@ -50,7 +50,7 @@ impl TriangleCells {
     pub(super) fn build(
         positions: &[DVec3],
         triangles: &[[u32; 3]],
-        division: Division,
+        (division, table): (Division, LvsiTable),
         membership: Membership,
         criteria: &Criteria,
     ) -> Option<Self> {
@@ -71,7 +71,8 @@ impl TriangleCells {
         };
         let touching = Touching::new(positions, triangles, membership);
         let all = (0..triangles.len() as u32).collect();
-        let (partition, contents) = Partition::build(&bounds, all, &touching, division, criteria);
+        let (partition, contents) =
+            Partition::build(&bounds, all, &touching, division, criteria, table);
         let mut starts = Vec::with_capacity(contents.len() + 1);
         let mut items = Vec::with_capacity(contents.iter().map(Vec::len).sum());
         let mut marks = touching.marks();

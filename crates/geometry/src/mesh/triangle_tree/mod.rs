@@ -75,12 +75,13 @@ impl TriangleTree {
             }
             TriangleSearch::Cells {
                 division,
+                table,
                 membership,
                 criteria,
             } => TriangleCells::build(
                 &all.positions,
                 &all.triangles,
-                division,
+                (division, table),
                 membership,
                 &criteria,
             )
@@ -127,6 +128,12 @@ impl TriangleTree {
     /// The box around a triangle.
     pub(super) fn bounds(&self, triangle: u32) -> Aabb {
         Aabb::from_points(self.corners(triangle))
+    }
+
+    /// Bytes of the triangles and their corners.
+    #[must_use]
+    pub fn bytes(&self) -> u64 {
+        (size_of_val(self.positions.as_slice()) + size_of_val(self.triangles.as_slice())) as u64
     }
 
     /// Figures about the wide octree, if there is one.

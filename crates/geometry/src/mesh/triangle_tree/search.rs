@@ -1,7 +1,7 @@
 //! How triangles are searched, what that needs and what it costs.
 
 use octray_tree::traversal::Steps;
-use octray_tree::{Criteria, Division, WalkCost, WalkMemory, WideTreeConfig};
+use octray_tree::{Criteria, Division, LvsiTable, WalkCost, WalkMemory, WideTreeConfig};
 
 use crate::Membership;
 
@@ -20,6 +20,8 @@ pub enum TriangleSearch {
     Cells {
         /// Which cells, and how they are walked.
         division: Division,
+        /// How large a hash table is, where there is one.
+        table: LvsiTable,
         /// How it is decided which triangles touch a cell.
         membership: Membership,
         /// When to divide an octree's cells, and how much memory there is.

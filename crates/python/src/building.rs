@@ -1,0 +1,92 @@
+//! How to build, from the keywords of `Scene.prepare`.
+
+use octray::math::MAX_DEPTH;
+use octray::world::{LvsiTable, TableSize, WorldConfig};
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+
+use crate::world::method_called;
+
+/// What may be said about building; `None` leaves a default.
+#[derive(Debug, Default)]
+pub(crate) struct Building<'a, 'py> {
+    pub(crate) objects: Option<u32>,
+    pub(crate) depth: Option<u32>,
+    /// A number or `"off"`.
+    pub(crate) cost: Option<&'a Bound<'py, PyAny>>,
+    pub(crate) share: Option<f64>,
+    pub(crate) memory: Option<u64>,
+    pub(crate) table: Option<&'a str>,
+    pub(crate) load: Option<f64>,
+}
+
+fn refused<T>(text: String) -> PyResult<T> {
+    Err(PyValueError::new_err(text))
+}
+
+impl Building<'_, '_> {
+    /// The configuration for a method.
+    pub(crate) fn config(&self, accel: &str) -> PyResult<WorldConfig> {
+        let mut config = WorldConfig {
+            method: method_called(accel)?,
+            ..WorldConfig::default()
+        };
+        let criteria = &mut config.criteria;
+        if let Some(objects) = self.objects {
+            criteria.max_parts = objects;
+        }
+        if let Some(depth) = self.depth {
+            if depth > MAX_DEPTH {
+                return refused(format!(
+                    "tree_depth must be at most {MAX_DEPTH}, not {depth}"
+                ));
+            }
+            criteria.max_depth = depth;
+        }
+        if let Some(cost) = self.cost.filter(|cost| !cost.is_none()) {
+            match cost.extract::<f64>() {
+                Ok(x) if x.is_finite() && x >= 0.0 => criteria.visit_cost = x,
+                _ if cost.extract::<String>().is_ok_and(|text| text == "off") => {
+                    criteria.by_cost = false;
+                }
+                _ => {
+                    let text = cost.repr()?;
+                    return refused(format!(
+                        "tree_cost must be a number, 0 or more, or \"off\", not {text}"
+                    ));
+                }
+            }
+        }
+        if let Some(share) = self.share {
+            if !(0.0..=1.0).contains(&share) {
+                return refused(format!("tree_share must be from 0 to 1, not {share}"));
+            }
+            criteria.max_share = share;
+        }
+        if let Some(bytes) = self.memory {
+            criteria.memory_limit = bytes;
+            config.triangles.memory_limit = bytes;
+        }
+        if let Some(table) = self.table {
+            config.table.size = match table {
+                "prime" => TableSize::Prime,
+                "power-of-two" => TableSize::PowerOfTwo,
+                other => {
+                    return refused(format!(
+                        "lvsi_table must be \"prime\" or \"power-of-two\", not {other:?}"
+                    ));
+                }
+            };
+        }
+        if let Some(load) = self.load {
+            let [low, high] = LvsiTable::LOADS;
+            if !(low..=high).contains(&load) {
+                return refused(format!(
+                    "lvsi_load must be from {low} to {high}, not {load}"
+                ));
+            }
+            config.table.load = load;
+        }
+        Ok(config)
+    }
+}

@@ -1,0 +1,134 @@
+//! Figures about what was built: memory by part, and the cells themselves.
+
+use octray_math::{Aabb, CellKey};
+use octray_tree::{Node, Partition, Tally};
+
+use crate::World;
+
+/// Bytes of what a world keeps beside its scene, by part.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct MemoryStats {
+    /// Nodes of the tree over solids, or the hash table, or the voxels.
+    pub cells: u64,
+    /// What occupied cells hold: lists of objects and surfaces.
+    pub contents: u64,
+    /// The reduced expressions of the objects in cells; equal ones are kept once.
+    pub expressions: u64,
+    /// Surfaces of solids, without coefficients of polynomials.
+    pub surfaces: u64,
+    /// Faces of solids.
+    pub faces: u64,
+    /// Triangles with their corners, of sheets and mesh operands.
+    pub triangles: u64,
+    /// The octrees with wide nodes over triangles.
+    pub wide_trees: u64,
+    /// The most bytes that cells and their contents took while they were built, with what building
+    /// keeps beside them.
+    pub building: u64,
+}
+
+impl MemoryStats {
+    /// What is there after building.
+    #[must_use]
+    pub const fn total(&self) -> u64 {
+        self.cells
+            + self.contents
+            + self.expressions
+            + self.surfaces
+            + self.faces
+            + self.triangles
+            + self.wide_trees
+    }
+}
+
+/// What cells were made over.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum CellsOf {
+    /// Solids, and sheets of quadric surfaces.
+    Solids,
+    /// Triangles of mesh sheets.
+    Triangles,
+}
+
+/// A leaf of an octree, or a voxel of a grid.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct WorldCell {
+    /// Depth and indices; of a voxel, depth 0 and its indices in the grid.
+    pub key: CellKey,
+    /// In coordinates of the world.
+    pub bounds: Aabb,
+    /// How many objects it holds whose boundary may pass through; `None` if it is empty.
+    pub objects: Option<u32>,
+    /// How many surfaces (or triangles) that may pass through.
+    pub parts: u32,
+}
+
+/// What an occupied leaf holds.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Held {
+    pub(crate) objects: u32,
+    pub(crate) parts: u32,
+}
+
+impl World {
+    /// The box that is divided into cells, in coordinates of the world; `None` where the method makes
+    /// no cells or there is nothing to make them over.
+    #[must_use]
+    pub fn root(&self, of: CellsOf) -> Option<Aabb> {
+        let (partition, _) = self.partition(of)?;
+        Some(self.in_world(partition.bounds()))
+    }
+
+    /// Visits the leaves, or voxels: of a hash table, those it stores. Nothing where there is no
+    /// [`World::root`].
+    pub fn visit_cells(&self, of: CellsOf, mut visit: impl FnMut(WorldCell)) {
+        let Some((partition, held)) = self.partition(of) else {
+            return;
+        };
+        partition.visit_leaves(|leaf| {
+            let held = match leaf.node {
+                Node::Occupied(index) => Some(held(index)),
+                _ => None,
+            };
+            visit(WorldCell {
+                key: leaf.key,
+                bounds: self.in_world(&leaf.bounds),
+                objects: held.map(|h| h.objects),
+                parts: held.map_or(0, |h| h.parts),
+            });
+        });
+    }
+
+    /// The cells, and what the occupied ones hold.
+    fn partition(&self, of: CellsOf) -> Option<(&Partition, impl Fn(u32) -> Held + '_)> {
+        let partition = match of {
+            CellsOf::Solids => self.solids.partition()?,
+            CellsOf::Triangles => return None,
+        };
+        Some((partition, |leaf| self.solids.held(leaf)))
+    }
+
+    fn in_world(&self, bounds: &Aabb) -> Aabb {
+        let origin = self.place.frame.origin;
+        Aabb::new(bounds.min + origin, bounds.max + origin)
+    }
+
+    pub(crate) fn memory(&self) -> MemoryStats {
+        let mut memory = self.solids.memory();
+        let triangles = self.sheets.triangles();
+        memory.triangles += triangles.bytes();
+        memory.wide_trees += triangles.tree_stats().map_or(0, |stats| stats.bytes);
+        memory
+    }
+
+    /// How many objects the occupied cells over solids hold.
+    pub(crate) fn objects_per_leaf(&self) -> Tally {
+        let mut tally = Tally::default();
+        if let Some(cells) = self.solids.partition() {
+            let leaves = cells.stats().cells.occupied;
+            let objects = |leaf| u64::from(self.solids.held(leaf).objects);
+            tally.extend((0..leaves as u32).map(objects));
+        }
+        tally
+    }
+}
