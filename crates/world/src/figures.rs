@@ -8,9 +8,9 @@ use crate::World;
 /// Bytes of what a world keeps beside its scene, by part.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct MemoryStats {
-    /// Nodes of the tree over solids, or the hash table, or the voxels.
+    /// Nodes of the trees over solids and triangles, or the hash tables, or the voxels.
     pub cells: u64,
-    /// What occupied cells hold: lists of objects and surfaces.
+    /// What occupied cells hold: lists of objects and surfaces, and of triangles.
     pub contents: u64,
     /// The reduced expressions of the objects in cells; equal ones are kept once.
     pub expressions: u64,
@@ -103,9 +103,12 @@ impl World {
     fn partition(&self, of: CellsOf) -> Option<(&Partition, impl Fn(u32) -> Held + '_)> {
         let partition = match of {
             CellsOf::Solids => self.solids.partition()?,
-            CellsOf::Triangles => return None,
+            CellsOf::Triangles => self.sheets.triangles().partition()?,
         };
-        Some((partition, |leaf| self.solids.held(leaf)))
+        Some((partition, move |leaf| match of {
+            CellsOf::Solids => self.solids.held(leaf),
+            CellsOf::Triangles => self.sheets.held(leaf),
+        }))
     }
 
     fn in_world(&self, bounds: &Aabb) -> Aabb {
@@ -118,6 +121,11 @@ impl World {
         let triangles = self.sheets.triangles();
         memory.triangles += triangles.bytes();
         memory.wide_trees += triangles.tree_stats().map_or(0, |stats| stats.bytes);
+        if let Some(cells) = triangles.partition().map(|cells| &cells.stats().cells) {
+            memory.cells += cells.node_bytes;
+            memory.contents += cells.bytes - cells.node_bytes;
+            memory.building = memory.building.max(cells.peak_bytes);
+        }
         memory
     }
 

@@ -156,7 +156,7 @@ impl World {
     /// Figures about what was built.
     #[must_use]
     pub fn stats(&self) -> WorldStats {
-        let triangle_cells = self.sheets.triangles().cell_stats();
+        let triangles = self.sheets.triangles();
         WorldStats {
             objects: self.scene.objects().len(),
             surfaces: self.solids.surface_count(),
@@ -167,8 +167,8 @@ impl World {
             objects_per_leaf: self.objects_per_leaf(),
             memory: self.memory(),
             triangle_tree: self.sheets.triangles().tree_stats().copied(),
-            triangle_cells: triangle_cells.map(|(cells, _)| cells.clone()),
-            triangle_marks: triangle_cells.map(|(_, marks)| *marks),
+            triangle_cells: triangles.partition().map(|cells| cells.stats().clone()),
+            triangle_marks: triangles.marks().copied(),
         }
     }
 

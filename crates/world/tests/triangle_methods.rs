@@ -10,7 +10,7 @@ use answers::{Answers, answers, methods};
 use octray_geometry::{Sheet, Solid, TriangleMesh};
 use octray_math::{DVec3, Ray};
 use octray_scene::{Color, Material, Object, Pigment, SceneBuilder};
-use octray_world::{Counters, Criteria, Method, RayQuery, World, WorldConfig};
+use octray_world::{CellsOf, Counters, Criteria, Method, RayQuery, World, WorldConfig};
 use proptest::prelude::*;
 use random::model;
 
@@ -298,6 +298,42 @@ fn the_figures_say_what_was_done() {
         assert!(marks.questions > 0);
     }
     marked("grid:20");
+}
+
+#[test]
+fn cells_say_what_they_hold() {
+    // Two objects whose boxes touch in one plane.
+    let flat = |z: f64| opaque(net(8, move |x, y| DVec3::new(x, y, z + 0.01 * x)));
+    let soups = [flat(0.0), flat(0.7)];
+    for name in ["grid:9", "octree", "octree:lvsi-empty"] {
+        let world = world(&soups, &[], name.parse().expect("a method"));
+        let root = world.root(CellsOf::Triangles).expect("cells");
+        assert!(root.contains_box(&world.bounds()));
+        let (mut occupied, mut parts, mut of_both) = (0, 0, 0);
+        world.visit_cells(CellsOf::Triangles, |cell| {
+            let near = |z: f64| cell.bounds.min.z < z + 0.011 && cell.bounds.max.z > z - 0.001;
+            let held = u32::from(near(0.0)) + u32::from(near(0.7));
+            assert!(cell.objects.unwrap_or(0) <= held, "{cell:?}");
+            occupied += u64::from(cell.objects.is_some());
+            parts += u64::from(cell.parts);
+            of_both += u32::from(cell.objects == Some(2));
+        });
+        let stats = world.stats();
+        let marks = stats.triangle_marks.expect("marks");
+        let cells = stats.triangle_cells.expect("cells").cells;
+        assert_eq!(
+            (occupied, parts),
+            (cells.occupied, marks.references),
+            "{name}"
+        );
+        assert_eq!(of_both, 0, "{name}: no cell is so large");
+        assert!(stats.memory.contents >= 4 * marks.references && stats.memory.cells > 0);
+    }
+    // One voxel holds all.
+    let world = world(&soups, &[], Method::Grid(Some(1)));
+    world.visit_cells(CellsOf::Triangles, |cell| {
+        assert_eq!((cell.objects, cell.parts), (Some(2), 4 * 64));
+    });
 }
 
 #[test]

@@ -22,7 +22,7 @@
 //! [`CellTree::CONTENT_MARGIN`]: octray_tree::CellTree::CONTENT_MARGIN
 
 use octray_math::{Aabb, DVec3, Interval, Ray};
-use octray_tree::{Criteria, Division, LvsiTable, Partition, PartitionStats};
+use octray_tree::{Criteria, Division, LvsiTable, Partition};
 
 use super::membership::{Touching, TriangleMarks};
 use super::search::{SearchCost, SearchMemory};
@@ -92,8 +92,14 @@ impl TriangleCells {
         })
     }
 
-    pub(super) const fn stats(&self) -> &PartitionStats {
-        self.partition.stats()
+    pub(super) const fn partition(&self) -> &Partition {
+        &self.partition
+    }
+
+    /// The triangles that touch an occupied cell, increasing.
+    pub(super) fn listed(&self, leaf: u32) -> &[u32] {
+        let leaf = leaf as usize;
+        &self.items[self.starts[leaf]..self.starts[leaf + 1]]
     }
 
     pub(super) const fn marks(&self) -> &TriangleMarks {
@@ -127,8 +133,7 @@ impl TriangleCells {
         mailbox.begin(self.triangles);
         let mut end = span.end;
         let steps = self.partition.walk(ray, span, walk, |leaf, _| {
-            let leaf = leaf as usize;
-            for &triangle in &self.items[self.starts[leaf]..self.starts[leaf + 1]] {
+            for &triangle in self.listed(leaf) {
                 if !mailbox.is_new(triangle) {
                     cost.mailbox += 1;
                     continue;

@@ -8,7 +8,7 @@ mod volumes;
 use std::ops::Range;
 
 use octray_math::{Aabb, DVec3, Interval, Ray};
-use octray_tree::{PartitionStats, WideTree, WideTreeError, WideTreeStats};
+use octray_tree::{Partition, WideTree, WideTreeError, WideTreeStats};
 
 use super::{TriangleHit, TriangleRay};
 use cells::TriangleCells;
@@ -145,13 +145,32 @@ impl TriangleTree {
         }
     }
 
-    /// Figures about the cells, and what decided what they list, if there are any.
-    #[must_use]
-    pub fn cell_stats(&self) -> Option<(&PartitionStats, &TriangleMarks)> {
+    const fn cells(&self) -> Option<&TriangleCells> {
         match &self.index {
-            Index::Cells(cells) => Some((cells.stats(), cells.marks())),
+            Index::Cells(cells) => Some(cells),
             _ => None,
         }
+    }
+
+    /// The cells, if there are any.
+    #[must_use]
+    pub fn partition(&self) -> Option<&Partition> {
+        self.cells().map(TriangleCells::partition)
+    }
+
+    /// What decided which triangles the cells list, if there are any.
+    #[must_use]
+    pub fn marks(&self) -> Option<&TriangleMarks> {
+        self.cells().map(TriangleCells::marks)
+    }
+
+    /// The triangles that touch an occupied cell, increasing; none where there are no cells.
+    ///
+    /// # Panics
+    /// If there are cells, but not so many occupied ones.
+    #[must_use]
+    pub fn listed(&self, leaf: u32) -> &[u32] {
+        self.cells().map_or(&[], |cells| cells.listed(leaf))
     }
 
     /// The octree or the cells as words: equal for equal triangles, whatever built it.
