@@ -129,13 +129,12 @@ impl World {
         memory
     }
 
-    /// How many objects the occupied cells over solids hold.
-    pub(crate) fn objects_per_leaf(&self) -> Tally {
+    /// How many objects the occupied cells hold.
+    pub(crate) fn objects_per_leaf(&self, of: CellsOf) -> Tally {
         let mut tally = Tally::default();
-        if let Some(cells) = self.solids.partition() {
+        if let Some((cells, held)) = self.partition(of) {
             let leaves = cells.stats().cells.occupied;
-            let objects = |leaf| u64::from(self.solids.held(leaf).objects);
-            tally.extend((0..leaves as u32).map(objects));
+            tally.extend((0..leaves as u32).map(|leaf| u64::from(held(leaf).objects)));
         }
         tally
     }
