@@ -13,7 +13,10 @@ use octray_tree::{Criteria, Division, Encoding, LvsiStore, LvsiTable, Traversal,
 
 /// Every way to search, each encoding, traversal and membership test among them.
 fn searches() -> Vec<TriangleSearch> {
-    let criteria = Criteria::default();
+    let criteria = Criteria {
+        max_depth: 8,
+        ..Criteria::default()
+    };
     let cells = |division, membership| TriangleSearch::Cells {
         division,
         table: LvsiTable::default(),
@@ -42,7 +45,7 @@ fn searches() -> Vec<TriangleSearch> {
             table: LvsiTable::default(),
             membership: Membership::Analytic,
             criteria: Criteria {
-                visit_cost: 0.01,
+                visit_cost: 0.05,
                 ..criteria
             },
         },

@@ -113,9 +113,10 @@ impl Image {
     /// What the rendering cost: times, rays, trees, memory.
     ///
     /// `rays` and `hits` count by kind of ray: `primary`, `reflected`, `refracted`, `shadow`, and
-    /// `total`. `tests_per_ray` says what one ray cost on average: `cells` of the solids' octree or
-    /// grid entered (or bounding volumes tested), `lookups` of hash rows or tree nodes to find them,
-    /// `nodes` of the triangles' octree entered, `surfaces` and `triangles` intersected.
+    /// `total`. `tests_per_ray` says what one ray cost on average: `cells` of octrees and
+    /// grids entered (or bounding volumes tested), `lookups` of hash rows or tree nodes to find them,
+    /// `nodes` of the triangles' wide octree entered, `surfaces` and `triangles` intersected, `mailbox`
+    /// the triangles that were not, because the ray had met them in an earlier cell.
     /// `tests_by_kind` says the same for each kind, with the number of its `rays`: the sums over the
     /// kinds of rays times tests are those of `tests_per_ray`. A shadow ray counts once, its tests
     /// behind transparent surfaces included.

@@ -25,6 +25,7 @@ fn tests<'py>(py: Python<'py>, cost: &Counters, rays: u64) -> PyResult<Bound<'py
     let dict = PyDict::new(py);
     dict.set_item("surfaces", per_ray(cost.surface_tests))?;
     dict.set_item("triangles", per_ray(cost.triangle_tests))?;
+    dict.set_item("mailbox", per_ray(cost.mailbox))?;
     dict.set_item("cells", per_ray(cost.cells))?;
     dict.set_item("lookups", per_ray(cost.lookups))?;
     dict.set_item("nodes", per_ray(cost.nodes))?;

@@ -17,6 +17,10 @@
 //! | `resolution` | of a grid, voxels on each axis |
 //! | `lvsi` | of a hash table, `leaves` stored, `rows` used, `table_size`, `heads_used`, `longest_chain`, `bytes`, `bytes_per_leaf` |
 //!
+//! `trees.triangle_cells` says the same of the cells over triangles, with `questions`, how often it was
+//! asked whether a triangle touches a cell, and `decided_by_step`, how many of them each of the four
+//! steps of the triangle-cube test decided.
+//!
 //! `memory` is bytes by part (see `octray::world::MemoryStats`), their `total`, and `peak_bytes` of the
 //! process, where the system tells.
 
@@ -151,6 +155,14 @@ pub(crate) fn add(py: Python<'_>, report: &Bound<'_, PyDict>, prepared: &Prepare
     trees.set_item("triangles", over_triangles.transpose()?)?;
     let over_triangles = stats.triangle_tree.as_ref();
     trees.set_item("wide", over_triangles.map(|s| wide(py, s)).transpose()?)?;
+    let triangle_cells = stats.triangle_cells.as_ref().zip(stats.triangle_marks);
+    let triangle_cells = triangle_cells.map(|(cells, marks)| {
+        let dict = self::cells(py, cells, &stats.objects_per_triangle_leaf)?;
+        dict.set_item("questions", marks.questions)?;
+        dict.set_item("decided_by_step", marks.steps)?;
+        PyResult::Ok(dict)
+    });
+    trees.set_item("triangle_cells", triangle_cells.transpose()?)?;
     report.set_item("trees", trees)?;
     let marks = stats.triangle_marks.as_ref();
     let marks = marks.map(|m| triangle_cube(py, m)).transpose()?;

@@ -73,7 +73,7 @@ pub fn triangle_meets_cube(triangle: &[DVec3; 3], cube: &Aabb) -> Verdict {
             None => return decided(Step::Edge, true),
             // Seen along this axis, the triangle lies on the other side of the edge: all of it
             // misses, which the last step would find.
-            Some((axis, side)) if !is_beyond(triangle, (i, j, k), axis, side) => {
+            Some((axis, side)) if is_opposite(triangle, (i, j, k), axis, side) => {
                 return decided(Step::Diagonal, false);
             }
             Some(_) => {}
@@ -98,8 +98,8 @@ fn plane_clearly_misses([a, b, c]: &[DVec3; 3], cube: &Aabb) -> bool {
     error > UNDERFLOW && (normal.dot(lowest) > error || normal.dot(highest) < -error)
 }
 
-/// Whether corner `k` lies on the given side of the edge from `i` to `j`, seen along the axis.
-fn is_beyond(
+/// Whether corner `k` lies on the other side of the edge from `i` to `j`, seen along the axis.
+fn is_opposite(
     triangle: &[DVec3; 3],
     (i, j, k): (usize, usize, usize),
     axis: usize,
@@ -110,9 +110,8 @@ fn is_beyond(
         x: triangle[corner][u],
         y: triangle[corner][v],
     });
-    // Written so that a NaN, or a zero that may have underflowed, means yes.
-    let turn = orient2d(from, to, third) * side;
-    turn >= 0.0 || turn.is_nan()
+    // A NaN, or a zero that may have underflowed, decides nothing.
+    orient2d(from, to, third) * side < 0.0
 }
 
 /// The axis along which one sees that the segment misses the box, and the side of it on which the

@@ -8,9 +8,9 @@ use crate::World;
 /// Bytes of what a world keeps beside its scene, by part.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct MemoryStats {
-    /// Nodes of the tree over solids, or the hash table, or the voxels.
+    /// Nodes of the trees over solids and triangles, or the hash tables, or the voxels.
     pub cells: u64,
-    /// What occupied cells hold: lists of objects and surfaces.
+    /// What occupied cells hold: lists of objects and surfaces, and of triangles.
     pub contents: u64,
     /// The reduced expressions of the objects in cells; equal ones are kept once.
     pub expressions: u64,
@@ -109,18 +109,10 @@ impl World {
             CellsOf::Solids => self.solids.partition()?,
             CellsOf::Triangles => triangles.partition()?,
         };
-        let held = move |leaf| match of {
+        Some((partition, move |leaf| match of {
             CellsOf::Solids => self.solids.held(leaf),
-            // A triangle is what the paper calls an object.
-            CellsOf::Triangles => {
-                let count = triangles.listed(leaf) as u32;
-                Held {
-                    objects: count,
-                    parts: count,
-                }
-            }
-        };
-        Some((partition, held))
+            CellsOf::Triangles => self.sheets.held(leaf),
+        }))
     }
 
     fn in_world(&self, bounds: &Aabb) -> Aabb {
@@ -134,16 +126,18 @@ impl World {
         memory.triangles += triangles.bytes();
         memory.triangle_cells += triangles.cell_bytes();
         memory.wide_trees += triangles.tree_stats().map_or(0, |stats| stats.bytes);
+        if let Some(cells) = triangles.partition().map(|cells| &cells.stats().cells) {
+            memory.building = memory.building.max(cells.peak_bytes);
+        }
         memory
     }
 
-    /// How many objects the occupied cells over solids hold.
-    pub(crate) fn objects_per_leaf(&self) -> Tally {
+    /// How many objects the occupied cells hold.
+    pub(crate) fn objects_per_leaf(&self, of: CellsOf) -> Tally {
         let mut tally = Tally::default();
-        if let Some(cells) = self.solids.partition() {
+        if let Some((cells, held)) = self.partition(of) {
             let leaves = cells.stats().cells.occupied;
-            let objects = |leaf| u64::from(self.solids.held(leaf).objects);
-            tally.extend((0..leaves as u32).map(objects));
+            tally.extend((0..leaves as u32).map(|leaf| u64::from(held(leaf).objects)));
         }
         tally
     }

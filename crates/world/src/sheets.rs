@@ -11,6 +11,7 @@ use octray_math::Interval;
 use octray_scene::{ObjectId, Scene, Shape};
 use octray_tree::WideTreeError;
 
+use crate::figures::Held;
 use crate::line::Line;
 use crate::{Counters, Method, WorldConfig};
 
@@ -102,6 +103,16 @@ impl Sheets {
     /// The triangles with their octree or cells.
     pub(crate) const fn triangles(&self) -> &TriangleTree {
         &self.triangles
+    }
+
+    /// What an occupied cell over the triangles holds.
+    pub(crate) fn held(&self, leaf: u32) -> Held {
+        let listed = self.triangles.listed(leaf);
+        let part = |&t: &u32| self.parts.partition_point(|p| p.first_triangle <= t);
+        Held {
+            objects: listed.chunk_by(|a, b| part(a) == part(b)).count() as u32,
+            parts: listed.len() as u32,
+        }
     }
 
     pub(crate) fn triangle_count(&self) -> usize {

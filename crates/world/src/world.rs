@@ -15,7 +15,7 @@ use thiserror::Error;
 use crate::line::{Line, Place};
 use crate::sheets::{SheetHit, Sheets};
 use crate::solids::{Interface, Scratch, Solids};
-use crate::{Counters, Hit, MemoryStats, Method, RayQuery, Region};
+use crate::{CellsOf, Counters, Hit, MemoryStats, Method, RayQuery, Region};
 
 /// How to prepare a world.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -84,6 +84,8 @@ pub struct WorldStats {
     pub triangle_tree: Option<WideTreeStats>,
     /// The cells over the triangles of sheets.
     pub triangle_cells: Option<PartitionStats>,
+    /// How many objects the occupied cells over triangles hold.
+    pub objects_per_triangle_leaf: Tally,
     /// What decided which triangles those cells list, and how many they do.
     pub triangle_marks: Option<TriangleMarks>,
 }
@@ -156,7 +158,7 @@ impl World {
     /// Figures about what was built.
     #[must_use]
     pub fn stats(&self) -> WorldStats {
-        let triangle_cells = self.sheets.triangles().cell_stats();
+        let triangles = self.sheets.triangles();
         WorldStats {
             objects: self.scene.objects().len(),
             surfaces: self.solids.surface_count(),
@@ -164,11 +166,12 @@ impl World {
             faces: self.solids.face_count() as usize + self.sheets.triangle_count(),
             triangles: self.sheets.triangle_count(),
             cells: self.solids.partition().map(|cells| cells.stats().clone()),
-            objects_per_leaf: self.objects_per_leaf(),
+            objects_per_leaf: self.objects_per_leaf(CellsOf::Solids),
             memory: self.memory(),
             triangle_tree: self.sheets.triangles().tree_stats().copied(),
-            triangle_cells: triangle_cells.map(|(cells, _)| cells.clone()),
-            triangle_marks: triangle_cells.map(|(_, marks)| *marks),
+            triangle_cells: triangles.partition().map(|cells| cells.stats().clone()),
+            objects_per_triangle_leaf: self.objects_per_leaf(CellsOf::Triangles),
+            triangle_marks: triangles.marks().copied(),
         }
     }
 

@@ -23,7 +23,7 @@
 
 use octray_math::{Aabb, DVec3, Interval, Ray};
 use octray_tree::traversal::Steps;
-use octray_tree::{Criteria, Division, LvsiTable, Partition, PartitionStats};
+use octray_tree::{Criteria, Division, LvsiTable, Partition};
 
 use super::membership::{Touching, TriangleMarks};
 use super::search::{SearchCost, SearchMemory};
@@ -93,18 +93,14 @@ impl TriangleCells {
         })
     }
 
-    pub(super) const fn stats(&self) -> &PartitionStats {
-        self.partition.stats()
-    }
-
     pub(super) const fn partition(&self) -> &Partition {
         &self.partition
     }
 
-    /// How many triangles the occupied cell with this index lists.
-    pub(super) fn listed(&self, leaf: u32) -> usize {
+    /// The triangles that touch an occupied cell, increasing.
+    pub(super) fn listed(&self, leaf: u32) -> &[u32] {
         let leaf = leaf as usize;
-        self.starts[leaf + 1] - self.starts[leaf]
+        &self.items[self.starts[leaf]..self.starts[leaf + 1]]
     }
 
     /// Bytes of the cells and of their lists.
@@ -160,8 +156,7 @@ impl TriangleCells {
         mailbox.begin(self.triangles);
         let mut end = span.end;
         let steps = self.partition.walk(ray, span, walk, |leaf, _| {
-            let leaf = leaf as usize;
-            for &triangle in &self.items[self.starts[leaf]..self.starts[leaf + 1]] {
+            for &triangle in self.listed(leaf) {
                 if !mailbox.is_new(triangle) {
                     cost.mailbox += 1;
                     continue;

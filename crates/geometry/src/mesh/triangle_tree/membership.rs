@@ -32,6 +32,10 @@ pub(super) struct Touching<'a> {
     counts: [AtomicU64; 5],
 }
 
+/// Work of a triangle in one of its cells, in units of one plane intersected with a line; a ray tests
+/// it only in the first that it meets. Measured over smooth meshes of 70,000 and 1,000,000 triangles:
+/// rays are no slower than with 1, the tree has a third of the nodes.
+const TRIANGLE_COST: f64 = 0.3;
 /// A triangle is covered by the boxes of `4^2` parts.
 const COVER_LEVELS: u32 = 2;
 
@@ -128,7 +132,7 @@ impl Subdivide for Touching<'_> {
             return Cell::Empty(0);
         }
         Cell::Occupied {
-            cost: content.len() as f64,
+            cost: TRIANGLE_COST * content.len() as f64,
             parts: content.len() as u32,
         }
     }

@@ -9,7 +9,7 @@ use std::ops::Range;
 
 use octray_math::{Aabb, DVec3, Interval, Ray};
 use octray_tree::traversal::Steps;
-use octray_tree::{Partition, PartitionStats, WideTree, WideTreeError, WideTreeStats};
+use octray_tree::{Partition, WideTree, WideTreeError, WideTreeStats};
 
 use super::{TriangleHit, TriangleRay};
 use cells::TriangleCells;
@@ -146,40 +146,38 @@ impl TriangleTree {
         }
     }
 
-    /// Figures about the cells, and what decided what they list, if there are any.
-    #[must_use]
-    pub fn cell_stats(&self) -> Option<(&PartitionStats, &TriangleMarks)> {
+    const fn cells(&self) -> Option<&TriangleCells> {
         match &self.index {
-            Index::Cells(cells) => Some((cells.stats(), cells.marks())),
+            Index::Cells(cells) => Some(cells),
             _ => None,
         }
     }
 
     /// The cells, if there are any.
     #[must_use]
-    pub const fn partition(&self) -> Option<&Partition> {
-        match &self.index {
-            Index::Cells(cells) => Some(cells.partition()),
-            _ => None,
-        }
+    pub fn partition(&self) -> Option<&Partition> {
+        self.cells().map(TriangleCells::partition)
     }
 
-    /// How many triangles the occupied cell with this index lists; 0 where there are no cells.
+    /// What decided which triangles the cells list, if there are any.
     #[must_use]
-    pub fn listed(&self, leaf: u32) -> usize {
-        match &self.index {
-            Index::Cells(cells) => cells.listed(leaf),
-            _ => 0,
-        }
+    pub fn marks(&self) -> Option<&TriangleMarks> {
+        self.cells().map(TriangleCells::marks)
+    }
+
+    /// The triangles that touch an occupied cell, increasing; none where there are no cells.
+    ///
+    /// # Panics
+    /// If there are cells, but not so many occupied ones.
+    #[must_use]
+    pub fn listed(&self, leaf: u32) -> &[u32] {
+        self.cells().map_or(&[], |cells| cells.listed(leaf))
     }
 
     /// Bytes of the cells with their lists of triangles, 0 where there are none.
     #[must_use]
     pub fn cell_bytes(&self) -> u64 {
-        match &self.index {
-            Index::Cells(cells) => cells.bytes(),
-            _ => 0,
-        }
+        self.cells().map_or(0, TriangleCells::bytes)
     }
 
     /// The octree or the cells as words: equal for equal triangles, whatever built it.
