@@ -171,13 +171,16 @@ impl Subject {
 
 /// What brute force makes of each scene; of scenes that look and answer alike, the first.
 #[expect(clippy::print_stdout, reason = "a scene that is left out is said")]
+#[expect(clippy::print_stderr, reason = "long runs say how far they are")]
 fn distinct(specimens: Vec<Specimen>, full: bool) -> Vec<Subject> {
     let by_brute_force = |specimen: Specimen| {
         let class = Class::of(&specimen);
         let questions = class.questions(full);
         let config = Combination::BRUTE.config();
+        let brute = Evidence::of(&specimen, &config, questions);
+        eprintln!("by brute force: {}", specimen.name);
         Subject {
-            brute: Evidence::of(&specimen, &config, questions),
+            brute,
             class,
             questions,
             specimen,
