@@ -5,6 +5,7 @@
 //! what to test, one `f64` function per shape decides, and ties go to the lowest face.
 
 mod batch;
+mod beam;
 mod chords;
 mod faces;
 mod figures;
@@ -13,6 +14,7 @@ mod line;
 mod method;
 mod query;
 mod sheets;
+mod slice;
 mod solids;
 mod start;
 mod surfaces;

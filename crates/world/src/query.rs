@@ -180,6 +180,21 @@ impl Counters {
         self.lookups += cost.steps.lookups;
         self.mailbox += cost.mailbox;
     }
+
+    /// The part of one of so many: together they are the whole.
+    pub(crate) fn share(&self, index: usize, of: usize) -> Self {
+        let (index, of) = (index as u64, of as u64);
+        let part = |count: u64| count / of + u64::from(index < count % of);
+        Self {
+            rays: part(self.rays),
+            cells: part(self.cells),
+            lookups: part(self.lookups),
+            mailbox: part(self.mailbox),
+            nodes: part(self.nodes),
+            surface_tests: part(self.surface_tests),
+            triangle_tests: part(self.triangle_tests),
+        }
+    }
 }
 
 impl std::ops::AddAssign for Counters {

@@ -179,30 +179,26 @@ impl World {
             .chain(self.sheets.triangles().tree_words())
     }
 
-    /// The nearest surface on each ray; `hits` is cleared and gets one hit per query.
-    ///
-    /// A ray that is not finite or has no direction meets nothing.
-    pub fn closest(&self, queries: &[RayQuery], hits: &mut Vec<Hit>, counters: &mut Counters) {
-        hits.clear();
-        counters.rays += queries.len() as u64;
-        self.scratch.with(|scratch| {
-            hits.extend(
-                queries
-                    .iter()
-                    .map(|query| self.closest_one(query, scratch, counters)),
-            );
-        });
-    }
-
     pub(crate) fn closest_one(
         &self,
         query: &RayQuery,
         scratch: &mut Scratch,
         counters: &mut Counters,
     ) -> Hit {
-        let Some(mut line) = self.line(query, false) else {
-            return Hit::MISS;
-        };
+        match self.line(query, false) {
+            Some(line) => self.closest_on_line(line, scratch, counters),
+            None => Hit::MISS,
+        }
+    }
+
+    /// The nearest surface on a half-line.
+    #[inline]
+    pub(crate) fn closest_on_line(
+        &self,
+        mut line: Line,
+        scratch: &mut Scratch,
+        counters: &mut Counters,
+    ) -> Hit {
         loop {
             match self.nearest(&line, scratch, counters) {
                 None => return Hit::MISS,
@@ -264,21 +260,6 @@ impl World {
         best
     }
 
-    /// Whether a surface that no light passes, of an object that casts shadows, lies on each ray;
-    /// `blocked` is cleared and gets one answer per query.
-    pub fn occluded(&self, queries: &[RayQuery], blocked: &mut Vec<bool>, counters: &mut Counters) {
-        blocked.clear();
-        counters.rays += queries.len() as u64;
-        self.scratch.with(|scratch| {
-            let stops = |face| self.blocks(face);
-            blocked.extend(
-                queries
-                    .iter()
-                    .map(|query| self.meets_any(query, &stops, scratch, counters)),
-            );
-        });
-    }
-
     /// Whether any of the faces that count lies on the ray.
     pub(crate) fn meets_any(
         &self,
@@ -287,13 +268,23 @@ impl World {
         scratch: &mut Scratch,
         counters: &mut Counters,
     ) -> bool {
-        let Some(line) = self.line(query, false) else {
-            return false;
-        };
+        let line = self.line(query, false);
+        line.is_some_and(|line| self.line_meets_any(&line, counts, scratch, counters))
+    }
+
+    /// Whether any of the faces that count lies on the half-line.
+    #[inline]
+    pub(crate) fn line_meets_any(
+        &self,
+        line: &Line,
+        counts: &impl Fn(FaceId) -> bool,
+        scratch: &mut Scratch,
+        counters: &mut Counters,
+    ) -> bool {
         let found = Cell::new(false);
         // Returns the parameter beyond which nothing matters any more.
         let visit = |s: f64, face: FaceId, entering: bool| {
-            let counts = s < line.end && counts(face) && !self.starts_on(&line, s, face, entering);
+            let counts = s < line.end && counts(face) && !self.starts_on(line, s, face, entering);
             found.set(found.get() || counts);
             if found.get() {
                 f64::NEG_INFINITY
@@ -302,7 +293,7 @@ impl World {
             }
         };
         self.sheets.visit_line(
-            &line,
+            line,
             f64::INFINITY,
             &mut scratch.triangles,
             counters,
@@ -310,7 +301,7 @@ impl World {
         );
         if !found.get() {
             self.solids
-                .sweep_line(&line, f64::INFINITY, scratch, counters, |change| {
+                .sweep_line(line, f64::INFINITY, scratch, counters, |change| {
                     change
                         .interface()
                         .map_or(f64::INFINITY, |i| visit(i.s, i.face, i.entering))
@@ -320,7 +311,7 @@ impl World {
     }
 
     /// Whether a face stops light.
-    fn blocks(&self, face: FaceId) -> bool {
+    pub(crate) fn blocks(&self, face: FaceId) -> bool {
         self.owner(face).is_some_and(|(object, material)| {
             self.opaque[material.0 as usize]
                 && self.scene.objects()[object.0 as usize].casts_shadows
