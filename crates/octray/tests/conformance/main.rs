@@ -24,9 +24,9 @@ use scenes::{Collection, Specimen};
 /// Scenes of more primitives are not small.
 const SMALL: usize = 2_000;
 /// Nor are those of which brute force, for 16 x 12 pixels, makes more intersection tests.
-const LITTLE_WORK: u64 = 60_000;
+const LITTLE_WORK: u64 = 20_000;
 /// The selection goes round among so many large scenes, or meshes.
-const HANDS: usize = 4;
+const HANDS: usize = 8;
 
 /// How a scene is looked at.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
