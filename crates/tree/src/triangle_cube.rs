@@ -112,7 +112,7 @@ fn is_beyond(
     });
     // Written so that a NaN, or a zero that may have underflowed, means yes.
     let turn = orient2d(from, to, third) * side;
-    !(turn < 0.0)
+    turn >= 0.0 || turn.is_nan()
 }
 
 /// The axis along which one sees that the segment misses the box, and the side of it on which the
