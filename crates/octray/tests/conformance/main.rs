@@ -53,7 +53,8 @@ impl Class {
         let (picture, rays) = match (self, full) {
             (Self::Small, _) | (Self::Large, true) => (Some((64, 48)), 64),
             (Self::Large, false) => (Some(PREVIEW), 64),
-            (Self::Mesh, _) => (None, 2_000),
+            (Self::Mesh, true) => (None, 2_000),
+            (Self::Mesh, false) => (None, 500),
         };
         Questions { picture, rays }
     }
