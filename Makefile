@@ -11,7 +11,7 @@ export PIP_DISABLE_PIP_VERSION_CHECK := 1
 BIN := .venv/bin
 RUST_SOURCES := $(shell find crates -name '*.rs' -o -name Cargo.toml) Cargo.toml Cargo.lock
 
-.PHONY: help demo test test-rust test-python lint setup lab peers peers-speed clean toolchain
+.PHONY: help demo test test-rust test-python conformance lint setup lab peers peers-speed clean toolchain
 .DELETE_ON_ERROR:
 
 help: ## Print this list
@@ -28,6 +28,9 @@ test-rust: toolchain
 
 test-python: .venv/tools
 	$(BIN)/pytest
+
+conformance: toolchain ## Compare every combination of methods with brute force on every scene (hours)
+	OCTRAY_CONFORMANCE=full cargo test --release -p octray --test conformance -- --nocapture
 
 lint: .venv/tools ## Check formatting, lints and types of both languages
 	cargo fmt --all --check

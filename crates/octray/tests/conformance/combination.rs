@@ -4,7 +4,7 @@
 use std::collections::BTreeSet;
 use std::fmt;
 
-use octray::world::{Criteria, Method, WorldConfig};
+use octray::world::{Criteria, Encoding, LvsiTable, Method, TableSize, WorldConfig};
 
 /// When cells are divided: names of presets that take structures to different ends.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -17,13 +17,44 @@ pub(crate) enum Preset {
     Shallow,
     /// Memory for a few cells only.
     Cramped,
+    /// As few objects in a cell as its depth allows: the paper's.
+    Counted,
+    /// Until half of a cell is occupied.
+    Share,
 }
 
-const PRESETS: [Preset; 4] = [
+const PRESETS: [Preset; 6] = [
     Preset::Usual,
     Preset::Fine,
     Preset::Shallow,
     Preset::Cramped,
+    Preset::Counted,
+    Preset::Share,
+];
+
+/// Sizes of hash tables: a prime, a power of two, and one with long chains.
+const TABLES: [(&str, LvsiTable); 3] = [
+    (
+        "prime",
+        LvsiTable {
+            size: TableSize::Prime,
+            load: 0.75,
+        },
+    ),
+    (
+        "power",
+        LvsiTable {
+            size: TableSize::PowerOfTwo,
+            load: 0.75,
+        },
+    ),
+    (
+        "crowded",
+        LvsiTable {
+            size: TableSize::Prime,
+            load: 32.0,
+        },
+    ),
 ];
 
 impl Preset {
@@ -46,6 +77,19 @@ impl Preset {
                 memory_limit: 256 << 10,
                 ..usual
             },
+            Self::Counted => Criteria {
+                by_cost: false,
+                max_parts: 4,
+                max_depth: 6,
+                memory_limit: 16 << 20,
+                ..usual
+            },
+            Self::Share => Criteria {
+                max_share: 0.5,
+                visit_cost: 1.0,
+                max_depth: 8,
+                ..usual
+            },
         }
     }
 }
@@ -55,18 +99,22 @@ impl Preset {
 pub(crate) struct Combination {
     pub(crate) method: Method,
     preset: Preset,
+    /// Its place in [`TABLES`].
+    table: usize,
 }
 
 impl Combination {
     pub(crate) const BRUTE: Self = Self {
         method: Method::Brute,
         preset: Preset::Usual,
+        table: 0,
     };
 
     pub(crate) fn config(&self) -> WorldConfig {
         WorldConfig {
             method: self.method,
             criteria: self.preset.criteria(),
+            table: TABLES[self.table].1,
             ..WorldConfig::default()
         }
     }
@@ -87,6 +135,9 @@ impl Combination {
         }
         if self.method.division().is_some() {
             levels.push(("criteria", format!("{:?}", self.preset)));
+        }
+        if has_table(self.method) {
+            levels.push(("table", TABLES[self.table].0.to_owned()));
         }
         levels
     }
@@ -112,8 +163,21 @@ impl fmt::Display for Combination {
         if self.preset != Preset::Usual {
             write!(f, " ({:?})", self.preset)?;
         }
+        if self.table != 0 {
+            write!(f, " ({} table)", TABLES[self.table].0)?;
+        }
         Ok(())
     }
+}
+
+const fn has_table(method: Method) -> bool {
+    matches!(
+        method,
+        Method::Octree {
+            encoding: Encoding::Lvsi(_),
+            ..
+        }
+    )
 }
 
 /// Every method but brute force, and grids of given sizes.
@@ -128,6 +192,7 @@ pub(crate) fn usual() -> Vec<Combination> {
     let combination = |method| Combination {
         method,
         preset: Preset::Usual,
+        table: 0,
     };
     methods().map(combination).collect()
 }
@@ -141,9 +206,14 @@ pub(crate) fn product() -> Vec<Combination> {
         } else {
             &PRESETS[..1]
         };
-        presets
-            .iter()
-            .map(move |&preset| Combination { method, preset })
+        let tables = if has_table(method) { TABLES.len() } else { 1 };
+        presets.iter().flat_map(move |&preset| {
+            (0..tables).map(move |table| Combination {
+                method,
+                preset,
+                table,
+            })
+        })
     };
     methods().flat_map(with_presets).collect()
 }

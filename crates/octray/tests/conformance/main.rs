@@ -24,9 +24,9 @@ use scenes::{Collection, Specimen};
 /// Scenes of more primitives are not small.
 const SMALL: usize = 2_000;
 /// Nor are those of which brute force, for 16 x 12 pixels, makes more intersection tests.
-const LITTLE_WORK: u64 = 60_000;
+const LITTLE_WORK: u64 = 20_000;
 /// The selection goes round among so many large scenes, or meshes.
-const HANDS: usize = 4;
+const HANDS: usize = 8;
 
 /// How a scene is looked at.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -53,7 +53,8 @@ impl Class {
         let (picture, rays) = match (self, full) {
             (Self::Small, _) | (Self::Large, true) => (Some((64, 48)), 64),
             (Self::Large, false) => (Some(PREVIEW), 64),
-            (Self::Mesh, _) => (None, 2_000),
+            (Self::Mesh, true) => (None, 2_000),
+            (Self::Mesh, false) => (None, 500),
         };
         Questions { picture, rays }
     }
@@ -171,13 +172,16 @@ impl Subject {
 
 /// What brute force makes of each scene; of scenes that look and answer alike, the first.
 #[expect(clippy::print_stdout, reason = "a scene that is left out is said")]
+#[expect(clippy::print_stderr, reason = "long runs say how far they are")]
 fn distinct(specimens: Vec<Specimen>, full: bool) -> Vec<Subject> {
     let by_brute_force = |specimen: Specimen| {
         let class = Class::of(&specimen);
         let questions = class.questions(full);
         let config = Combination::BRUTE.config();
+        let brute = Evidence::of(&specimen, &config, questions);
+        eprintln!("by brute force: {}", specimen.name);
         Subject {
-            brute: Evidence::of(&specimen, &config, questions),
+            brute,
             class,
             questions,
             specimen,
