@@ -9,7 +9,7 @@ pub mod csg;
 mod frame;
 mod identity;
 mod implicit;
-mod membership;
+pub mod membership;
 pub mod mesh;
 pub mod polygon;
 mod polyhedron;

@@ -109,7 +109,7 @@ pub(super) struct Cells<'a> {
 }
 
 impl Cells<'_> {
-    fn classify(&self, surface: u32, cell: &Aabb) -> Side {
+    pub(super) fn classify(&self, surface: u32, cell: &Aabb) -> Side {
         match self.surfaces.get(surface as usize) {
             Some(surface) => surface.classify(cell),
             None => self.mesh(surface).classify(cell),

@@ -5,6 +5,7 @@ mod interact;
 mod leaf;
 mod numbering;
 mod operand_boxes;
+mod operand_cells;
 mod prepare;
 mod roots;
 mod spans;

@@ -3,15 +3,17 @@
 use std::cmp::Ordering;
 
 use octray_geometry::csg::{Constant, Face, Lowered, LoweredScene, Lowering, MeshOperand};
+use octray_geometry::membership::Marker;
 use octray_geometry::mesh::{MeshError, MeshSolid};
 use octray_geometry::surface::{PLACE_TOLERANCE, SURFACE_TOLERANCE};
-use octray_geometry::{FaceId, MaterialId, SceneFrame, Sheet, Solid};
+use octray_geometry::{FaceId, MaterialId, Membership, SceneFrame, Sheet, Solid};
 use octray_math::Aabb;
 use octray_scene::{Object, ObjectId, Scene, Shape};
 use octray_tree::{Division, Encoding, Partition, WideTreeConfig};
 
 use super::cells::{Cells, Content};
 use super::operand_boxes::OperandBoxes;
+use super::operand_cells::{OperandCells, operands_of_faces};
 use super::volumes::Volumes;
 use super::{Leaves, MeshSurface, Ranked, Solids};
 use crate::{Method, WorldConfig};
@@ -26,6 +28,11 @@ struct Candidate<'a> {
     bounds: Aabb,
 }
 
+/// What merged surfaces and rounding move, many times over.
+fn slack(frame: &SceneFrame) -> f64 {
+    64.0 * (SURFACE_TOLERANCE * frame.size + PLACE_TOLERANCE * frame.largest())
+}
+
 impl<'a> Candidate<'a> {
     fn new(index: usize, object: &'a Object, frame: &SceneFrame) -> Option<Self> {
         let (boundary, clip) = match &object.shape {
@@ -35,8 +42,7 @@ impl<'a> Candidate<'a> {
         };
         // By the same transforms as the faces, so that rounding far from the origin moves both.
         let scene_from_world = frame.scene_from_world();
-        // What merged surfaces and rounding move, many times over.
-        let slack = 64.0 * (SURFACE_TOLERANCE * frame.size + PLACE_TOLERANCE * frame.largest());
+        let slack = slack(frame);
         let bounds = [Some(boundary), clip]
             .into_iter()
             .flatten()
@@ -90,7 +96,10 @@ impl Solids {
         // Faces are numbered in the order of the objects, ranks are a matter of this module.
         let mut lowering = Lowering::new(frame);
         let by_share = config.criteria.max_share < 1.0;
-        if by_share {
+        let division = config.method.division();
+        let membership = config.method.membership();
+        let by_operands = division.is_some() && membership != Membership::Analytic;
+        if by_share || by_operands {
             lowering = lowering.with_operands();
         }
         let mut lowered = Vec::with_capacity(candidates.len());
@@ -151,7 +160,6 @@ impl Solids {
             .filter(Aabb::is_bounded)
             .fold(Aabb::EMPTY, Aabb::union);
         let object_bounds: Vec<Aabb> = candidates.iter().map(|c| c.bounds).collect();
-        let division = config.method.division();
         let volumes = match config.method {
             Method::Spheres => Some(Volumes::new(&object_bounds, true)),
             Method::Boxes => Some(Volumes::new(&object_bounds, false)),
@@ -175,14 +183,29 @@ impl Solids {
             if matches!(division, Division::Octree(Encoding::Lvsi(_), _)) {
                 whole = Some(outer.clone());
             }
-            let (built, leaves) = Partition::build(
-                &bounds,
-                outer,
-                &restricting,
-                division,
-                &config.criteria,
-                config.table,
-            );
+            let (built, leaves) = if by_operands {
+                let marker = Marker::new(&operands, membership, slack(frame));
+                let operand_of = operands_of_faces(&operands);
+                let marking = OperandCells::new(&restricting, &operands, &marker, &operand_of);
+                let (built, leaves) = Partition::build(
+                    &bounds,
+                    marking.root(outer),
+                    &marking,
+                    division,
+                    &config.criteria,
+                    config.table,
+                );
+                (built, leaves.into_iter().map(|leaf| leaf.content).collect())
+            } else {
+                Partition::build(
+                    &bounds,
+                    outer,
+                    &restricting,
+                    division,
+                    &config.criteria,
+                    config.table,
+                )
+            };
             contents = leaves;
             cells = Some(built);
             outer = unbounded;
