@@ -5,6 +5,7 @@
 //! what to test, one `f64` function per shape decides, and ties go to the lowest face.
 
 mod batch;
+mod cell_list;
 mod chords;
 mod faces;
 mod figures;
@@ -19,6 +20,7 @@ mod surfaces;
 mod world;
 
 pub use batch::{Batch, BatchError, Lists, RayRow, row_query};
+pub use cell_list::{CellList, CellListError};
 pub use chords::{Chord, ChordEnd, Overlaps};
 pub use figures::{CellsOf, MemoryStats, WorldCell};
 pub use method::{Method, MethodError};

@@ -57,7 +57,7 @@ impl Enclosure {
             points.iter().map(distance).fold(0.0, f64::max)
         };
         let radius = match corners(&operand.primitive) {
-            Some(corners) => reach(corners),
+            Some(corners) => reach(&corners),
             None => {
                 let stretched = radius_about(&operand.primitive, &bounds) * stretch(place);
                 reach(&bounds.corners()).min(stretched)
@@ -87,10 +87,10 @@ impl Enclosure {
 }
 
 /// The corners of what is made of flat faces.
-fn corners(primitive: &Primitive) -> Option<&[DVec3]> {
+fn corners(primitive: &Primitive) -> Option<Vec<DVec3>> {
     match primitive {
-        Primitive::Convex(polyhedron) => Some(&polyhedron.vertices),
-        Primitive::Mesh(mesh) => Some(mesh.positions()),
+        Primitive::Convex(polyhedron) => Some(polyhedron.vertices.clone()),
+        Primitive::Mesh(mesh) => Some(mesh.used_positions().collect()),
         _ => None,
     }
 }

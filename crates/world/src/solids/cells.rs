@@ -44,6 +44,11 @@ impl Content {
         &self.words[object.clip.clone()]
     }
 
+    /// The expressions and clips of all objects.
+    pub(super) fn expressions(&self) -> impl Iterator<Item = &[u32]> {
+        (self.objects.iter()).flat_map(|object| [self.expression(object), self.clip(object)])
+    }
+
     /// Adds an object as far as `truth` leaves it undecided. `expression` and `clip` are words, no
     /// clip meaning all of the boundary.
     pub(super) fn add(

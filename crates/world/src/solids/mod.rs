@@ -3,6 +3,7 @@
 mod cells;
 mod interact;
 mod leaf;
+mod listed_cells;
 mod numbering;
 mod operand_boxes;
 mod operand_cells;

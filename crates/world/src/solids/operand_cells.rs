@@ -36,16 +36,15 @@ pub(super) fn operands_of_faces(operands: &[Operand]) -> Vec<u32> {
 }
 
 /// The operands with a face in the expressions, increasing.
-pub(super) fn operands_in(content: &Content, operand_of: &[u32]) -> Vec<u32> {
+pub(super) fn operands_in<'w>(
+    expressions: impl Iterator<Item = &'w [u32]>,
+    operand_of: &[u32],
+) -> Vec<u32> {
     let mut found: Vec<u32> = Vec::new();
-    for object in &content.objects {
-        for words in [content.expression(object), content.clip(object)] {
-            for face in csg::faces(words) {
-                let operand = operand_of[face.0 as usize];
-                if found.last() != Some(&operand) {
-                    found.push(operand);
-                }
-            }
+    for face in expressions.flat_map(csg::faces) {
+        let operand = operand_of[face.0 as usize];
+        if found.last() != Some(&operand) {
+            found.push(operand);
         }
     }
     found.sort_unstable();
@@ -70,7 +69,7 @@ impl<'a> OperandCells<'a> {
 
     /// The contents with the operands that they are made of.
     pub(super) fn root(&self, content: Content) -> MarkedContent {
-        let operands = operands_in(&content, self.operand_of);
+        let operands = operands_in(content.expressions(), self.operand_of);
         let marks = self.marker.all(operands);
         MarkedContent { content, marks }
     }
@@ -99,8 +98,29 @@ impl<'a> OperandCells<'a> {
         csg::reduce(code.words(), &mut truth, &mut Vec::new()).map(|c| c == Constant::True)
     }
 
-    /// The contents of a cell that touches these operands, of a larger one's.
-    fn reduce(&self, parent: &MarkedContent, touched: Marks, cell: &Aabb) -> MarkedContent {
+    /// The operands that matter in a cell: these, and those of a larger one that lie there.
+    pub(super) fn touched_besides(
+        &self,
+        parent: &Marks,
+        mut operands: Vec<u32>,
+        cell: &Aabb,
+    ) -> Marks {
+        let there = |operand: &&u32| !self.marker.is_outside(**operand, cell);
+        operands.extend(parent.operands.iter().filter(there));
+        operands.sort_unstable();
+        operands.dedup();
+        self.marker.all(operands)
+    }
+
+    /// The contents of a cell that touches these operands, of a larger one's. `as_marked`: also those
+    /// without end are not decided where they are marked.
+    pub(super) fn reduce(
+        &self,
+        parent: &MarkedContent,
+        touched: Marks,
+        cell: &Aabb,
+        as_marked: bool,
+    ) -> MarkedContent {
         // What the parent's operands are here, as far as it was asked for.
         let candidates = &parent.marks.operands;
         let mut known: Vec<Option<Option<bool>>> = vec![None; candidates.len()];
@@ -109,7 +129,9 @@ impl<'a> OperandCells<'a> {
             let at = candidates.binary_search(&operand).ok()?;
             *known[at].get_or_insert_with(|| match touched.operands.binary_search(&operand) {
                 // Where it ends is not known, so its surfaces say where it is.
-                Ok(_) if self.marker.is_unbounded(operand) => self.value(operand, cell),
+                Ok(_) if !as_marked && self.marker.is_unbounded(operand) => {
+                    self.value(operand, cell)
+                }
                 Ok(_) => None,
                 Err(_) => self.constant(operand, cell),
             })
@@ -127,7 +149,7 @@ impl<'a> OperandCells<'a> {
         content.finish(self.cells.faces);
         let marks = self
             .marker
-            .keep(touched, operands_in(&content, self.operand_of));
+            .keep(touched, operands_in(content.expressions(), self.operand_of));
         MarkedContent { content, marks }
     }
 }
@@ -137,7 +159,7 @@ impl Subdivide for OperandCells<'_> {
 
     fn restrict(&self, parent: &MarkedContent, cell: &Aabb) -> MarkedContent {
         let touched = self.marker.restrict(&parent.marks, cell);
-        self.reduce(parent, touched, cell)
+        self.reduce(parent, touched, cell, false)
     }
 
     fn describe(&self, content: &MarkedContent) -> Cell {
