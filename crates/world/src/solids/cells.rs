@@ -6,7 +6,7 @@ use octray_geometry::FaceId;
 use octray_geometry::csg::{self, Constant, Face, truth_on};
 use octray_geometry::mesh::MeshSolid;
 use octray_geometry::surface::{Side, Surface};
-use octray_math::Aabb;
+use octray_math::{Aabb, DVec3};
 use octray_tree::{Cell, Subdivide};
 
 use super::operand_boxes::OperandBoxes;
@@ -118,6 +118,15 @@ impl Cells<'_> {
         match self.surfaces.get(surface as usize) {
             Some(surface) => surface.classify(cell),
             None => self.mesh(surface).classify(cell),
+        }
+    }
+
+    /// The side on which a point lies; of a mesh, one that is not on its boundary.
+    pub(super) fn side_of(&self, surface: u32, point: DVec3) -> Side {
+        match self.surfaces.get(surface as usize) {
+            Some(surface) => surface.classify(&Aabb::new(point, point)),
+            None if self.mesh(surface).contains(point) => Side::Negative,
+            None => Side::Positive,
         }
     }
 

@@ -5,7 +5,7 @@ use octray_geometry::FaceId;
 use octray_geometry::csg::{self, Constant, Operand, truth_on};
 use octray_geometry::membership::{Marker, Marks, witnesses};
 use octray_geometry::surface::Side;
-use octray_math::{Aabb, DVec3};
+use octray_math::Aabb;
 use octray_tree::{Cell, Subdivide};
 
 use super::cells::{Cells, Content};
@@ -80,20 +80,21 @@ impl<'a> OperandCells<'a> {
         if self.marker.is_outside(operand, cell) {
             return Some(self.operands[operand as usize].complemented);
         }
-        let at = |point: DVec3| self.value(operand, &Aabb::new(point, point));
-        (witnesses(cell).into_iter().find_map(at)).or_else(|| self.value(operand, cell))
+        let in_cell = |surface| self.cells.classify(surface, cell);
+        (witnesses(cell).into_iter())
+            .find_map(|point| self.value(operand, |surface| self.cells.side_of(surface, point)))
+            .or_else(|| self.value(operand, in_cell))
     }
 
-    /// The value of an operand's expression in a box, by the sides of its surfaces.
-    fn value(&self, operand: u32, bounds: &Aabb) -> Option<bool> {
+    /// The value of an operand's expression, by the sides of its surfaces.
+    fn value(&self, operand: u32, side: impl Fn(u32) -> Side) -> Option<bool> {
         let code = match &self.operands[operand as usize].expression {
             Ok(code) => code,
             Err(constant) => return Some(*constant == Constant::True),
         };
         let mut truth = |face: FaceId| {
             let face = &self.cells.faces[face.0 as usize];
-            let side: Side = self.cells.classify(face.surface.0, bounds);
-            truth_on(side, face.inside_is_positive)
+            truth_on(side(face.surface.0), face.inside_is_positive)
         };
         csg::reduce(code.words(), &mut truth, &mut Vec::new()).map(|c| c == Constant::True)
     }
@@ -130,7 +131,7 @@ impl<'a> OperandCells<'a> {
             *known[at].get_or_insert_with(|| match touched.operands.binary_search(&operand) {
                 // Where it ends is not known, so its surfaces say where it is.
                 Ok(_) if !as_marked && self.marker.is_unbounded(operand) => {
-                    self.value(operand, cell)
+                    self.value(operand, |surface| self.cells.classify(surface, cell))
                 }
                 Ok(_) => None,
                 Err(_) => self.constant(operand, cell),
