@@ -29,7 +29,8 @@ impl Marks {
 
 impl Marker {
     /// For the operands of a scene. Their boundaries may be off by up to `slack`, because surfaces
-    /// that nearly coincide are merged and coordinates are rounded.
+    /// that nearly coincide are merged and coordinates are rounded. Covers and shells are not made
+    /// here yet: boxes stand for them.
     #[must_use]
     pub fn new(operands: &[Operand], membership: Membership, slack: f64) -> Self {
         let enclosure = |operand: &Operand| match membership {
