@@ -83,7 +83,7 @@ fn placed(solid: &Solid, index: u32) -> Solid {
         0.3 * f64::from(index % 3),
     );
     let turn = DAffine3::from_axis_angle(DVec3::new(0.3, 1.0, 0.2).normalize(), f64::from(index));
-    let size = DVec3::new(1.0, 0.6, if index % 2 == 0 { 0.8 } else { -0.8 });
+    let size = DVec3::new(1.0, 0.6, if index.is_multiple_of(2) { 0.8 } else { -0.8 });
     let place = DAffine3::from_translation(at * 1.7) * turn * DAffine3::from_scale(size);
     solid.transform(place).expect("invertible")
 }

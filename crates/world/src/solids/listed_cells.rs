@@ -42,9 +42,9 @@ impl<'a> ListedCells<'a> {
         }
     }
 
-    pub(super) fn root(&self, content: MarkedContent) -> Listed {
+    pub(super) fn root(&self, content: &MarkedContent) -> Listed {
         let root = self.list.scene.root;
-        self.cell(CellKey::ROOT, &content, [0, self.list.len()], &root)
+        self.cell(CellKey::ROOT, content, [0, self.list.len()], &root)
     }
 
     fn cell(

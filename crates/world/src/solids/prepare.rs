@@ -435,7 +435,7 @@ fn along_list(
         return Err(CellListError::OtherScene);
     }
     let listed = ListedCells::new(marking, list);
-    let root = listed.root(marking.root(content));
+    let root = listed.root(&marking.root(content));
     let criteria = ListedCells::criteria(&config.criteria);
     let (built, leaves) =
         Partition::build(bounds, root, &listed, division, &criteria, config.table);
