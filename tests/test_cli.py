@@ -142,6 +142,17 @@ def test_json_is_one_object_and_alone(octray_command: Octray, cube: Path) -> Non
     assert report["exit"] == done.returncode == 0
 
 
+def test_a_picture_of_costs_says_what_its_colours_mean(octray_command: Octray, cube: Path) -> None:
+    done = octray_command("render", cube.name, *SIZE, "--integrator", "cost", "--json")
+    cost = json.loads(done.stdout)["cost"]
+    assert set(cost) == {"weights", "low", "high"}
+    assert cost["high"] > cost["low"] == 0
+    assert f"the brightest {cost['high']:.3g} or more" in done.stderr
+    viewed = octray_command("render", cube.name, "--integrator", "cost", "--view", "raw")
+    assert viewed.returncode == 2
+    assert "leave the view out" in viewed.stderr
+
+
 def test_threads_and_accelerator_do_not_change_a_byte(octray_command: Octray, cube: Path) -> None:
     (cube.parent / "solid.csg").write_text(
         "difference() { cube(size = [2, 2, 2], center = true); sphere(r = 1.3, $fn = 0); }"

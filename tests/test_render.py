@@ -261,6 +261,30 @@ def test_the_report_tells_what_each_kind_of_ray_cost() -> None:
         assert total == pytest.approx(average * report["rays"]["total"])
 
 
+def test_a_cost_picture_shows_what_the_rays_of_each_pixel_cost() -> None:
+    scene = octray.Scene()
+    for x in range(5):
+        scene.add(octray.sphere(0.4).translate(x=x))
+    image = scene.render(size=(40, 30), accel="brute", integrator="cost")
+    steps, surfaces, triangles = np.moveaxis(image.to_numpy(), -1, 0)
+    assert steps.max() == triangles.max() == 0
+    rays = image.report["rays"]
+    assert surfaces.sum() == 5 * rays["total"]
+    assert surfaces.min() == 5
+    cost = image.report["cost"]
+    assert cost["low"] == 0
+    assert cost["high"] == surfaces.max() * cost["weights"]["surface"]
+    assert scene.render(size=(4, 3)).report["cost"] is None
+    # A PNG is the heat map, which is neither black nor the array.
+    assert image.to_bytes("png") != scene.render(size=(40, 30)).to_bytes("png")
+    with pytest.raises(ValueError, match="no light"):
+        image.to_bytes("png", view="raw")
+    with pytest.raises(ValueError, match="no light"):
+        scene.render(size=(4, 3), integrator="cost", view="raw")
+    with pytest.raises(ValueError, match="integrator must be"):
+        scene.render(size=(4, 3), integrator="light")  # type: ignore[arg-type]
+
+
 def test_limits_of_the_octree_hold_are_reported_and_do_not_show() -> None:
     def picture(
         tree_depth: int | None = None, tree_memory: int | None = None

@@ -8,7 +8,7 @@ import numpy as np
 import numpy.typing as npt
 from typing_extensions import Unpack, disjoint_base
 
-from octray._options import Accel, MeshRule, Overlaps, RenderOptions, View
+from octray._options import Accel, Integrator, MeshRule, Overlaps, RenderOptions, View
 from octray.ray import RayIntersector
 
 __all__ = [
@@ -491,6 +491,8 @@ def check_request(
     crop: tuple[int, int, int, int] | None = None,
     max_depth: int | None = None,
     threshold: float | None = None,
+    view: View | None = None,
+    integrator: Integrator = "whitted",
 ) -> None: ...
 def cpu_features() -> list[str]: ...
 def default_threads() -> int: ...

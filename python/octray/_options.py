@@ -15,6 +15,8 @@ Accel = str
 MeshRule = Literal["strict", "winding"]
 #: Whose intervals count where solids overlap.
 Overlaps = Literal["regions", "priorities", "objects"]
+#: What a pixel shows: light, or what the rays of its light cost.
+Integrator = Literal["whitted", "cost"]
 #: How light becomes the colours of a PNG.
 View = Literal["neutral", "standard", "raw"]
 
@@ -34,3 +36,4 @@ class RenderOptions(TypedDict, total=False):
     progress: bool | Callable[[float], object] | None
     preview: Callable[[Image], object] | None
     on_interrupt: Literal["raise", "return"]
+    integrator: Integrator

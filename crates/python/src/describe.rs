@@ -157,6 +157,8 @@ fn camera<'py>(py: Python<'py>, camera: &Camera) -> PyResult<Bound<'py, PyDict>>
     dict.set_item("forward", camera.forward.to_array())?;
     dict.set_item("right", camera.right.to_array())?;
     dict.set_item("up", camera.up.to_array())?;
+    // Whether `right` is still to be multiplied by the picture's width / height.
+    dict.set_item("fit_aspect", camera.fit_aspect)?;
     Ok(dict)
 }
 

@@ -18,6 +18,8 @@ use crate::files;
 #[derive(Debug)]
 pub(crate) struct Image {
     inner: Arc<render::Image>,
+    /// What a PNG shows, if that is not `inner` developed.
+    heat: Option<Arc<render::Image>>,
     view: View,
     complete: bool,
     report: Option<Py<PyDict>>,
@@ -44,18 +46,34 @@ impl Image {
     ) -> Self {
         Self {
             inner: Arc::new(inner),
+            heat: None,
             view,
             complete,
             report,
         }
     }
 
+    /// The same with a heat map as what a PNG shows.
+    pub(crate) fn with_heat(self, heat: render::Image) -> Self {
+        let heat = Some(Arc::new(heat));
+        Self { heat, ..self }
+    }
+
     fn encoded(&self, py: Python<'_>, format: &str, view: Option<&str>) -> PyResult<Vec<u8>> {
-        let view = view.map_or(Ok(self.view), view_named)?;
+        let view = view.map(view_named).transpose()?;
         let inner = Arc::clone(&self.inner);
-        let encoded = match format {
-            "png" => py.detach(|| encode_png(&inner, view)),
-            "exr" => py.detach(|| encode_exr(&inner)),
+        let encoded = match (format, &self.heat) {
+            ("png", Some(_)) if view.is_some() => {
+                return Err(PyValueError::new_err(
+                    "a picture of costs is no light: it has one heat map and no view",
+                ));
+            }
+            ("png", Some(heat)) => {
+                let heat = Arc::clone(heat);
+                py.detach(|| encode_png(&heat, View::Raw))
+            }
+            ("png", None) => py.detach(|| encode_png(&inner, view.unwrap_or(self.view))),
+            ("exr", _) => py.detach(|| encode_exr(&inner)),
             _ => {
                 return Err(PyValueError::new_err(format!(
                     "pictures are written as png or exr, not as {format:?}"
@@ -101,6 +119,11 @@ impl Image {
     /// `tests_by_kind` says the same for each kind, with the number of its `rays`: the sums over the
     /// kinds of rays times tests are those of `tests_per_ray`. A shadow ray counts once, its tests
     /// behind transparent surfaces included.
+    ///
+    /// A picture of costs (`integrator="cost"`) has `cost`: what a step, a surface and a triangle weigh in
+    /// its heat map (`weights`), and the weighted costs of a sample (1 is the time of one surface's test)
+    /// at the ends of the scale: `low` is black, `high`, which 99.5 % of the pixels do not exceed, the
+    /// brightest. For others it is `None`.
     #[getter]
     fn report<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         match &self.report {
@@ -109,7 +132,8 @@ impl Image {
         }
     }
 
-    /// Linear light as a float32 array of shape (height, width, 3), row 0 at the top.
+    /// Linear light as a float32 array of shape (height, width, 3), row 0 at the top. Of a picture of
+    /// costs: per sample, the steps (cells, nodes, look-ups), the surfaces and the triangles tested.
     fn to_numpy<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray3<f32>>> {
         let shape = [self.inner.height() as usize, self.inner.width() as usize, 3];
         let numbers = self.inner.pixels().as_flattened().to_vec();

@@ -4,7 +4,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::time::{Duration, Instant};
 
-use octray::render::{Crop, Observer, RenderConfig, RenderJob, Rendering};
+use octray::render::{Crop, HeatMap, Observer, Plan, RenderConfig, RenderJob, Rendering, Shows};
 use octray::scene::{Camera, Settings, View};
 use octray::world::World;
 use pyo3::exceptions::{PyKeyboardInterrupt, PyValueError};
@@ -33,6 +33,7 @@ pub(crate) struct Request<'a, 'py> {
     pub(crate) progress: Option<&'a Bound<'py, PyAny>>,
     pub(crate) preview: Option<&'a Bound<'py, PyAny>>,
     pub(crate) on_interrupt: &'a str,
+    pub(crate) integrator: &'a str,
 }
 
 /// Pictures of scenes that name no size.
@@ -54,7 +55,14 @@ impl Request<'_, '_> {
                 )));
             }
         };
+        let shows = self.shows()?;
+        if shows == Shows::Cost && self.view.is_some() {
+            return Err(PyValueError::new_err(
+                "a picture of costs is no light: leave the view out",
+            ));
+        }
         Ok(RenderConfig {
+            shows,
             size: self.size.or(settings.size).or(Some(DEFAULT_SIZE)),
             spp: self.spp,
             crop,
@@ -64,6 +72,16 @@ impl Request<'_, '_> {
             progressive: self.preview.is_some(),
             ..RenderConfig::default()
         })
+    }
+
+    fn shows(&self) -> PyResult<Shows> {
+        match self.integrator {
+            "whitted" => Ok(Shows::Light),
+            "cost" => Ok(Shows::Cost),
+            other => Err(PyValueError::new_err(format!(
+                "integrator must be \"whitted\" or \"cost\", not {other:?}"
+            ))),
+        }
     }
 
     fn keeps_partial(&self) -> PyResult<bool> {
@@ -79,7 +97,8 @@ impl Request<'_, '_> {
 
 /// Checks the size of a picture before a scene is read; nothing is allocated.
 #[pyfunction]
-#[pyo3(signature = (*, size = None, spp = 1, threads = None, crop = None, max_depth = None, threshold = None))]
+#[expect(clippy::too_many_arguments, reason = "all by keyword")]
+#[pyo3(signature = (*, size = None, spp = 1, threads = None, crop = None, max_depth = None, threshold = None, view = None, integrator = "whitted"))]
 pub(crate) fn check_request(
     size: Option<(u32, u32)>,
     spp: u32,
@@ -87,6 +106,8 @@ pub(crate) fn check_request(
     crop: Option<(u32, u32, u32, u32)>,
     max_depth: Option<u32>,
     threshold: Option<f64>,
+    view: Option<&str>,
+    integrator: &str,
 ) -> PyResult<()> {
     let request = Request {
         size,
@@ -95,13 +116,14 @@ pub(crate) fn check_request(
         accel: "auto",
         // Whether it lies in the picture is known with the picture's size.
         crop: crop.filter(|_| size.is_some()),
-        view: None,
+        view,
         max_depth,
         threshold,
         seed: 0,
         progress: None,
         preview: None,
         on_interrupt: "raise",
+        integrator,
     };
     pool(threads)?;
     let settings = Settings::default();
@@ -209,16 +231,28 @@ pub(crate) fn render(scene: &Bound<'_, Scene>, request: &Request<'_, '_>) -> PyR
         Some(_) => {}
         None => watcher.progress(1.0)?,
     }
-    let report = report::rendering(py, &rendering, &prepared, duration, threads)?;
     let complete = rendering.is_complete();
-    let picture = py.detach(|| {
-        if complete {
+    let (picture, heat) = py.detach(|| {
+        let picture = if complete {
             rendering.image()
         } else {
             rendering.coarse_image()
-        }
+        };
+        let heat = heat_map(&rendering.plan, &picture);
+        (picture, heat)
     });
-    Ok(Image::new(picture, view, complete, Some(report)))
+    let high = heat.as_ref().map(|heat| heat.top);
+    let report = report::rendering(py, &rendering, &prepared, duration, threads, high)?;
+    let image = Image::new(picture, view, complete, Some(report));
+    Ok(match heat {
+        Some(heat) => image.with_heat(heat.image),
+        None => image,
+    })
+}
+
+/// The heat map of a picture of costs.
+fn heat_map(plan: &Plan, picture: &octray::render::Image) -> Option<HeatMap> {
+    (plan.shows == Shows::Cost).then(|| HeatMap::of_costs(picture))
 }
 
 /// The Python functions that want to know how far it is.
@@ -227,6 +261,8 @@ struct Watcher<'py> {
     preview: Option<Bound<'py, PyAny>>,
     bar: Option<Bound<'py, PyAny>>,
     view: View,
+    /// Whether pictures are of costs.
+    costs: bool,
 }
 
 impl<'py> Watcher<'py> {
@@ -247,6 +283,7 @@ impl<'py> Watcher<'py> {
             preview: request.preview.cloned().filter(|p| !p.is_none()),
             bar,
             view,
+            costs: request.shows()? == Shows::Cost,
         })
     }
 
@@ -259,7 +296,11 @@ impl<'py> Watcher<'py> {
 
     fn preview(&self, py: Python<'py>, image: octray::render::Image) -> PyResult<()> {
         if let Some(preview) = &self.preview {
-            let image = Image::new(image, self.view, false, None);
+            let heat = self.costs.then(|| HeatMap::of_costs(&image));
+            let mut image = Image::new(image, self.view, false, None);
+            if let Some(heat) = heat {
+                image = image.with_heat(heat.image);
+            }
             preview.call1((Bound::new(py, image)?,))?;
         }
         Ok(())

@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use octray::render::{RayCounts, RenderStats, Rendering};
+use octray::render::{COST_WEIGHTS, RayCounts, RenderStats, Rendering};
 use octray::world::Counters;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -42,13 +42,28 @@ fn tests_by_kind<'py>(py: Python<'py>, stats: &RenderStats) -> PyResult<Bound<'p
     Ok(dict)
 }
 
-/// Seconds, rays, tests per ray, trees, memory.
+/// What the colours of a heat map mean.
+fn heat_scale(py: Python<'_>, high: f64) -> PyResult<Bound<'_, PyDict>> {
+    let weights = PyDict::new(py);
+    let [step, surface, triangle] = COST_WEIGHTS.to_array();
+    weights.set_item("step", step)?;
+    weights.set_item("surface", surface)?;
+    weights.set_item("triangle", triangle)?;
+    let scale = PyDict::new(py);
+    scale.set_item("weights", weights)?;
+    scale.set_item("low", 0.0)?;
+    scale.set_item("high", high)?;
+    Ok(scale)
+}
+
+/// Seconds, rays, tests per ray, trees, memory; of a picture of costs, which cost is the hottest.
 pub(crate) fn rendering(
     py: Python<'_>,
     rendering: &Rendering,
     prepared: &Prepared,
     render: Duration,
     threads: usize,
+    hottest: Option<f64>,
 ) -> PyResult<Py<PyDict>> {
     let report = PyDict::new(py);
     let plan = &rendering.plan;
@@ -79,6 +94,11 @@ pub(crate) fn rendering(
     report.set_item("replaced_contributions", stats.replaced_contributions)?;
     report.set_item("ended_by_generation", stats.ended_by_generation)?;
     report.set_item("ended_by_contribution", stats.ended_by_contribution)?;
+
+    report.set_item(
+        "cost",
+        hottest.map(|high| heat_scale(py, high)).transpose()?,
+    )?;
 
     structures::add(py, &report, prepared)?;
     Ok(report.unbind())

@@ -330,11 +330,11 @@ impl Scene {
         cells::cells(slf, accel, kind, threads)
     }
 
-    /// Renders a picture.
+    /// Renders a picture: of light, or with `integrator="cost"` of what the same rays cost.
     #[pyo3(signature = (
         *, size = None, spp = 1, threads = None, accel = "auto", crop = None, view = None,
         max_depth = None, threshold = None, seed = 0, progress = None, preview = None,
-        on_interrupt = "raise"
+        on_interrupt = "raise", integrator = "whitted"
     ))]
     #[expect(clippy::too_many_arguments, reason = "all by keyword")]
     fn render(
@@ -351,6 +351,7 @@ impl Scene {
         progress: Option<&Bound<'_, PyAny>>,
         preview: Option<&Bound<'_, PyAny>>,
         on_interrupt: &str,
+        integrator: &str,
     ) -> PyResult<Image> {
         let request = Request {
             size,
@@ -365,6 +366,7 @@ impl Scene {
             progress,
             preview,
             on_interrupt,
+            integrator,
         };
         render::render(slf, &request)
     }

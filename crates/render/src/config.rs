@@ -12,6 +12,16 @@ pub const MAX_SPP: u32 = 1 << 16;
 /// A ray tree has at most this many generations.
 pub const MAX_GENERATIONS: u32 = 1 << 16;
 
+/// What a pixel shows.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Shows {
+    /// The light that arrives: [`Whitted`](crate::Whitted)'s recursive ray tracing.
+    #[default]
+    Light,
+    /// What the same rays cost: see [`cost_channels`](crate::cost_channels).
+    Cost,
+}
+
 /// What is asked of a rendering. What is `None` comes from the scene.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RenderConfig {
@@ -32,6 +42,8 @@ pub struct RenderConfig {
     pub progressive: bool,
     /// What the film may take, in bytes.
     pub memory_limit: u64,
+    /// What a pixel shows.
+    pub shows: Shows,
 }
 
 impl Default for RenderConfig {
@@ -45,6 +57,7 @@ impl Default for RenderConfig {
             seed: 0,
             progressive: false,
             memory_limit: 4 << 30,
+            shows: Shows::Light,
         }
     }
 }
@@ -136,6 +149,8 @@ pub struct Plan {
     pub seed: u64,
     /// Whether to begin with a coarse picture.
     pub progressive: bool,
+    /// What a pixel shows.
+    pub shows: Shows,
 }
 
 impl RenderConfig {
@@ -193,6 +208,7 @@ impl RenderConfig {
             contribution_threshold,
             seed: self.seed,
             progressive: self.progressive,
+            shows: self.shows,
         })
     }
 }

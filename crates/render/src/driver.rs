@@ -10,7 +10,7 @@ use crate::image::Image;
 use crate::integrator::Whitted;
 use crate::tile::Tile;
 use crate::tile_renderer::{TileRenderer, TileResult};
-use crate::{Film, Plan, PrimaryRays, RenderConfig, RenderError, RenderStats};
+use crate::{Film, Plan, PrimaryRays, RenderConfig, RenderError, RenderStats, Shows};
 
 /// Pixels along the edge of a tile of the last pass, a multiple of 2.
 const TILE_EDGE: u32 = 32;
@@ -52,7 +52,7 @@ pub struct RenderJob<'a> {
 /// A picture that is finished, or as far as it came before it was cancelled.
 #[derive(Clone, Debug)]
 pub struct Rendering {
-    /// The light, and which pixels have it.
+    /// The light (or the costs), and which pixels have it.
     pub film: Film,
     /// What it cost.
     pub stats: RenderStats,
@@ -149,7 +149,7 @@ impl<'a> RenderJob<'a> {
     /// The picture so far; missing pixels show the nearest coarser one.
     #[must_use]
     pub fn preview(&self) -> Image {
-        Image::coarse_from_film(&self.film, self.world.scene().settings().encoding)
+        Image::coarse_from_film(&self.film, self.encoding())
     }
 
     /// The light so far.
@@ -161,11 +161,20 @@ impl<'a> RenderJob<'a> {
     /// Ends the job, finished or not.
     #[must_use]
     pub fn finish(self) -> Rendering {
+        let encoding = self.encoding();
         Rendering {
             film: self.film,
             stats: self.stats,
             plan: self.plan,
-            encoding: self.world.scene().settings().encoding,
+            encoding,
+        }
+    }
+
+    /// What the film's values mean.
+    fn encoding(&self) -> Encoding {
+        match self.plan.shows {
+            Shows::Light => self.world.scene().settings().encoding,
+            Shows::Cost => Encoding::Linear,
         }
     }
 }

@@ -8,6 +8,7 @@
 pub mod bsdf;
 mod camera;
 mod config;
+mod cost;
 mod driver;
 mod film;
 mod image;
@@ -20,11 +21,15 @@ mod tile;
 mod tile_renderer;
 
 pub use camera::PrimaryRays;
-pub use config::{Crop, MAX_EDGE, MAX_GENERATIONS, MAX_SPP, Plan, RenderConfig, RenderError};
+pub use config::{
+    Crop, MAX_EDGE, MAX_GENERATIONS, MAX_SPP, Plan, RenderConfig, RenderError, Shows,
+};
+pub use cost::{Ledger, cost_channels};
 pub use driver::{Observer, RenderJob, Rendering, render};
 pub use film::{Film, MAX_CONTRIBUTION, PixelSums};
 pub use image::{
-    Image, ImageError, develop, develop_color, encode_exr, encode_png, neutral, scene_to_linear,
+    COST_WEIGHTS, HeatMap, Image, ImageError, develop, develop_color, encode_exr, encode_png,
+    heat_color, neutral, scene_to_linear,
 };
 pub use integrator::{Integrator, MAX_INTERFACES, ShadowTracer, Whitted, medium_of, transmission};
 pub use light::{Illumination, illuminate};

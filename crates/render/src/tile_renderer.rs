@@ -3,12 +3,13 @@
 use octray_math::Ray;
 use octray_world::{Departure, Hit, RayQuery, World};
 
+use crate::cost::Ledger;
 use crate::integrator::{Integrator, ShadowTracer};
 use crate::path::{PathState, Queues, RayKind};
 use crate::sampler::{pixel_position, sample_key};
 use crate::stats::RenderStats;
 use crate::tile::{Tile, TileFilm};
-use crate::{Observer, Plan, PrimaryRays};
+use crate::{Observer, Plan, PrimaryRays, Shows};
 
 /// Rays that are traced together, at most.
 const SLICE: usize = 1024;
@@ -67,8 +68,11 @@ impl<'a> TileRenderer<'a> {
 
     /// All samples of all pixels of the tile, or of the first ones if cancelled meanwhile.
     pub(crate) fn render(&mut self, tile: &Tile) -> TileResult {
+        let dark = || TileFilm::new(*tile, self.plan.crop.width);
+        let costs = (self.plan.shows == Shows::Cost).then(dark);
+        let mut ledger = Ledger::for_film(costs);
         let mut result = TileResult {
-            film: TileFilm::new(*tile, self.plan.crop.width),
+            film: dark(),
             finished: 0,
             stats: RenderStats::default(),
         };
@@ -85,11 +89,15 @@ impl<'a> TileRenderer<'a> {
             }
             // The newest ray is taken first: this keeps the samples in order.
             self.queues.paths.reverse();
-            if !self.drain(&mut result.film, &mut result.stats) {
+            if !self.drain(&mut result.film, &mut ledger, &mut result.stats) {
                 break;
             }
             next = end;
             result.finished = next / spp;
+        }
+        // Instead of the light.
+        if let Some(costs) = ledger.into_film() {
+            result.film = costs;
         }
         result
     }
@@ -114,24 +122,24 @@ impl<'a> TileRenderer<'a> {
 
     /// Traces and shades until nothing waits, the newest rays first. `false` if cancelled; then
     /// nothing waits either.
-    fn drain(&mut self, film: &mut TileFilm, stats: &mut RenderStats) -> bool {
+    fn drain(&mut self, film: &mut TileFilm, ledger: &mut Ledger, stats: &mut RenderStats) -> bool {
         while !self.queues.paths.is_empty() {
             if self.observer.cancelled() {
                 self.queues.paths.clear();
                 return false;
             }
-            self.shade_slice(film, stats);
+            self.shade_slice(film, ledger, stats);
             while !self.queues.shadows.is_empty() {
                 let rest = self.queues.shadows.len().saturating_sub(SLICE);
                 let newest = &self.queues.shadows[rest..];
-                self.shadow_tracer.trace(newest, film, stats);
+                self.shadow_tracer.trace(newest, film, ledger, stats);
                 self.queues.shadows.truncate(rest);
             }
         }
         true
     }
 
-    fn shade_slice(&mut self, film: &mut TileFilm, stats: &mut RenderStats) {
+    fn shade_slice(&mut self, film: &mut TileFilm, ledger: &mut Ledger, stats: &mut RenderStats) {
         let waiting = self.queues.paths.len();
         stats.longest_queue = stats.longest_queue.max(waiting as u64);
         let rest = waiting.saturating_sub(self.slice_length());
@@ -152,8 +160,8 @@ impl<'a> TileRenderer<'a> {
             } else {
                 &mut self.run_hits
             };
-            let counters = stats.queries.of_path(kind);
-            self.world.closest(&self.queries, hits, counters);
+            let cost = ledger.closest(self.world, &self.queries, run.iter(), hits, stats);
+            *stats.queries.of_path(kind) += cost;
             let met = hits.iter().filter(|hit| !hit.is_miss()).count();
             *stats.rays.of_path(kind) += run.len() as u64;
             *stats.hits.of_path(kind) += met as u64;

@@ -8,7 +8,7 @@ use crate::cell_tree::{
 };
 use crate::encoding::{Lvsi, LvsiStats, LvsiStore, LvsiTable};
 use crate::grid::Grid;
-use crate::traversal::{LeafSearch, Steps, TreePath};
+use crate::traversal::{BeamMemory, LeafSearch, Steps, TreePath};
 
 /// How an octree is kept.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -41,7 +41,7 @@ pub enum Traversal {
     FujimotoIwata,
     /// [`LeafSearch::walk_units`].
     Sung,
-    /// Neighbouring rays together; a ray alone as with [`Traversal::Ordered`].
+    /// Neighbouring rays together: [`CellTree::enter`]; a ray alone as with [`Traversal::Ordered`].
     Beam,
 }
 
@@ -98,6 +98,7 @@ pub struct Partition {
 #[derive(Clone, Debug, PartialEq)]
 enum Cells {
     Ordered(CellTree),
+    Beam(CellTree),
     FujimotoIwata(CellTree),
     Sung(CellTree),
     Lvsi(Lvsi),
@@ -132,6 +133,16 @@ pub struct Leaf {
 pub struct WalkMemory {
     stack: WalkStack,
     path: TreePath,
+    beam: BeamMemory,
+    /// Whether the lines to come are those that `beam` was made for.
+    in_beam: bool,
+}
+
+impl WalkMemory {
+    /// The lines to come are others than those of the run that entered last.
+    pub const fn leave(&mut self) {
+        self.in_beam = false;
+    }
 }
 
 impl Partition {
@@ -177,7 +188,8 @@ impl Partition {
         };
         let bounds = *tree.root();
         let cells = match (encoding, traversal) {
-            (Encoding::Tree, Traversal::Ordered | Traversal::Beam) => Cells::Ordered(tree),
+            (Encoding::Tree, Traversal::Ordered) => Cells::Ordered(tree),
+            (Encoding::Tree, Traversal::Beam) => Cells::Beam(tree),
             (Encoding::Tree, Traversal::FujimotoIwata) => Cells::FujimotoIwata(tree),
             (Encoding::Tree, Traversal::Sung) => Cells::Sung(tree),
             (Encoding::Lvsi(store), _) => {
@@ -270,9 +282,10 @@ impl Partition {
     /// The structure as it lies in memory, for hashing and comparing.
     pub fn words(&self) -> Box<dyn Iterator<Item = u32> + '_> {
         match &self.cells {
-            Cells::Ordered(tree) | Cells::FujimotoIwata(tree) | Cells::Sung(tree) => {
-                Box::new(tree.words())
-            }
+            Cells::Ordered(tree)
+            | Cells::Beam(tree)
+            | Cells::FujimotoIwata(tree)
+            | Cells::Sung(tree) => Box::new(tree.words()),
             Cells::Lvsi(table) => Box::new(table.words()),
             Cells::Grid(grid) => Box::new(grid.words()),
         }
@@ -286,7 +299,10 @@ impl Partition {
     /// Visits the leaves, or voxels: of a hash table, those it stores.
     pub fn visit_leaves(&self, mut visit: impl FnMut(Leaf)) {
         match &self.cells {
-            Cells::Ordered(tree) | Cells::FujimotoIwata(tree) | Cells::Sung(tree) => {
+            Cells::Ordered(tree)
+            | Cells::FujimotoIwata(tree)
+            | Cells::Sung(tree)
+            | Cells::Beam(tree) => {
                 tree.visit_leaves(|key, node| visit(self.leaf(key, node)));
             }
             Cells::Lvsi(table) => table.visit_leaves(|key, node| visit(self.leaf(key, node))),
@@ -302,11 +318,34 @@ impl Partition {
     #[must_use]
     pub fn locate(&self, point: DVec3) -> Option<Node> {
         match &self.cells {
-            Cells::Ordered(tree) | Cells::FujimotoIwata(tree) | Cells::Sung(tree) => {
-                tree.locate(point).map(|(_, node)| node)
-            }
+            Cells::Ordered(tree)
+            | Cells::Beam(tree)
+            | Cells::FujimotoIwata(tree)
+            | Cells::Sung(tree) => tree.locate(point).map(|(_, node)| node),
             Cells::Lvsi(table) => table.locate(&self.bounds, point),
             Cells::Grid(grid) => grid.locate(point),
+        }
+    }
+
+    /// Whether neighbouring rays travel together: then [`Partition::enter`] is worth its call.
+    #[must_use]
+    pub const fn has_beams(&self) -> bool {
+        matches!(self.cells, Cells::Beam(_))
+    }
+
+    /// Takes a run of neighbouring rays through the upper cells together, each with the part of it
+    /// that counts. Until [`WalkMemory::leave`], all walks with this memory must be of these rays and
+    /// within those parts. Returns what it cost all of them together; does nothing without beams.
+    pub fn enter(&self, rays: &[(Ray, Interval)], memory: &mut WalkMemory) -> Steps {
+        memory.in_beam = false;
+        let Cells::Beam(tree) = &self.cells else {
+            return Steps::default();
+        };
+        let entered = tree.enter(rays, &mut memory.beam);
+        memory.in_beam = entered.is_some();
+        Steps {
+            cells: entered.unwrap_or(0),
+            lookups: 0,
         }
     }
 
@@ -324,6 +363,14 @@ impl Partition {
     ) -> Steps {
         match &self.cells {
             Cells::Ordered(tree) => Steps {
+                cells: tree.walk(ray, within, &mut memory.stack, visit),
+                lookups: 0,
+            },
+            Cells::Beam(tree) if memory.in_beam => Steps {
+                cells: tree.walk_from(&memory.beam, ray, within, &mut memory.stack, visit),
+                lookups: 0,
+            },
+            Cells::Beam(tree) => Steps {
                 cells: tree.walk(ray, within, &mut memory.stack, visit),
                 lookups: 0,
             },

@@ -61,19 +61,66 @@ pub fn triangle_meets_cube(triangle: &[DVec3; 3], cube: &Aabb) -> Verdict {
     if codes[0] & codes[1] & codes[2] != 0 {
         return decided(Step::Face, false);
     }
-    for (i, j) in [(0, 1), (1, 2), (2, 0)] {
-        if codes[i] & codes[j] == 0 && edge_meets_cube(triangle[i], triangle[j], cube) {
-            return decided(Step::Edge, true);
+    // The last step would say so after all edges.
+    if plane_clearly_misses(triangle, cube) {
+        return decided(Step::Diagonal, false);
+    }
+    for (i, j, k) in [(0, 1, 2), (1, 2, 0), (2, 0, 1)] {
+        if codes[i] & codes[j] != 0 {
+            continue;
+        }
+        match separating_axis(triangle[i], triangle[j], cube) {
+            None => return decided(Step::Edge, true),
+            // Seen along this axis, the triangle lies on the other side of the edge: all of it
+            // misses, which the last step would find.
+            Some((axis, side)) if !is_beyond(triangle, (i, j, k), axis, side) => {
+                return decided(Step::Diagonal, false);
+            }
+            Some(_) => {}
         }
     }
     decided(Step::Diagonal, meets_diagonal(triangle, cube))
 }
 
-/// Whether the segment meets the box, given that no face separates them.
-fn edge_meets_cube(a: DVec3, b: DVec3, cube: &Aabb) -> bool {
+/// Whether the triangle's plane misses the box by more than rounding. Most triangles that fool their
+/// outcodes do, and this is much faster than asking their edges.
+fn plane_clearly_misses([a, b, c]: &[DVec3; 3], cube: &Aabb) -> bool {
+    let (u, v) = (*b - *a, *c - *a);
+    let normal = u.cross(v);
+    let down = normal.cmplt(DVec3::ZERO);
+    let lowest = DVec3::select(down, cube.max, cube.min) - *a;
+    let highest = DVec3::select(down, cube.min, cube.max) - *a;
+    // Each component of the normal is right to 4 units in the last place of this, each product with
+    // it to 2 more; the three products and their sums stay below 32 of them.
+    let size = u.abs().max_element() * v.abs().max_element();
+    let reach = lowest.abs().element_sum().max(highest.abs().element_sum());
+    let error = 32.0 * f64::EPSILON * size * reach;
+    error > UNDERFLOW && (normal.dot(lowest) > error || normal.dot(highest) < -error)
+}
+
+/// Whether corner `k` lies on the given side of the edge from `i` to `j`, seen along the axis.
+fn is_beyond(
+    triangle: &[DVec3; 3],
+    (i, j, k): (usize, usize, usize),
+    axis: usize,
+    side: f64,
+) -> bool {
+    let (u, v) = ((axis + 1) % 3, (axis + 2) % 3);
+    let [from, to, third] = [i, j, k].map(|corner| Coord {
+        x: triangle[corner][u],
+        y: triangle[corner][v],
+    });
+    // Written so that a NaN, or a zero that may have underflowed, means yes.
+    let turn = orient2d(from, to, third) * side;
+    !(turn < 0.0)
+}
+
+/// The axis along which one sees that the segment misses the box, and the side of it on which the
+/// box lies, given that no face separates them; `None` if they meet.
+fn separating_axis(a: DVec3, b: DVec3, cube: &Aabb) -> Option<(usize, f64)> {
     // The other axes that can separate are perpendicular to the edge and to an axis: seen along
     // that axis, the edge's line has the whole square on one side.
-    (0..3).all(|axis| {
+    (0..3).find_map(|axis| {
         let (u, v) = ((axis + 1) % 3, (axis + 2) % 3);
         let point = |p: DVec3| Coord { x: p[u], y: p[v] };
         let (from, to) = (point(a), point(b));
@@ -84,7 +131,13 @@ fn edge_meets_cube(a: DVec3, b: DVec3, cube: &Aabb) -> bool {
             (cube.min[u], cube.max[v]),
         ];
         let sides = corners.map(|(x, y)| orient2d(from, to, Coord { x, y }));
-        !(sides.iter().all(|s| *s > 0.0) || sides.iter().all(|s| *s < 0.0))
+        if sides.iter().all(|s| *s > 0.0) {
+            Some((axis, 1.0))
+        } else if sides.iter().all(|s| *s < 0.0) {
+            Some((axis, -1.0))
+        } else {
+            None
+        }
     })
 }
 

@@ -147,11 +147,16 @@ impl World {
         let crossed = ends.filter(|face| *face != FaceId::NONE).count() as u64;
         scratch.counted = chords;
         let mut sheets = 0;
-        self.sheets
-            .visit_line(line, f64::INFINITY, counters, |hit| {
+        self.sheets.visit_line(
+            line,
+            f64::INFINITY,
+            &mut scratch.triangles,
+            counters,
+            |hit| {
                 sheets += u64::from(!self.starts_on(line, hit.s, hit.face, hit.entering));
                 f64::INFINITY
-            });
+            },
+        );
         crossed + sheets
     }
 

@@ -5,6 +5,7 @@
 //! what to test, one `f64` function per shape decides, and ties go to the lowest face.
 
 mod batch;
+mod beam;
 mod cell_list;
 mod chords;
 mod faces;
@@ -14,6 +15,7 @@ mod line;
 mod method;
 mod query;
 mod sheets;
+mod slice;
 mod solids;
 mod start;
 mod surfaces;
@@ -29,6 +31,7 @@ pub use surfaces::{NearCoincidence, SurfaceReport};
 pub use world::{World, WorldConfig, WorldError, WorldStats};
 
 pub use octray_geometry::Membership;
+pub use octray_geometry::mesh::TriangleMarks;
 pub use octray_tree::{
     CellTreeStats, Criteria, Division, Encoding, LvsiStats, LvsiStore, LvsiTable, PartitionStats,
     TableSize, Tally, Traversal, WideTreeConfig, WideTreeError, WideTreeStats,

@@ -14,6 +14,10 @@ use thiserror::Error;
 /// with the encodings `tree`, `lvsi`, `lvsi-empty`, the traversals `ordered`, `sung`,
 /// `fujimoto-iwata`, `beam` and the membership tests `analytic`, `bounding-box`,
 /// `bounding-sphere`, `bounding-cover`, `shells`.
+///
+/// A method acts on the solids and on the triangles of meshes that bound nothing. A mesh that is an
+/// operand of a set operation counts as one surface among the solids'; the triangles of that surface
+/// are found by an octree with wide nodes of their own, except by brute force.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Method {
     /// The fastest: an octree over the solids, one with wide nodes over the triangles.

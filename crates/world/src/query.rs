@@ -1,5 +1,6 @@
 //! What is asked and what is answered.
 
+use octray_geometry::mesh::SearchCost;
 use octray_geometry::{FaceId, MaterialId};
 use octray_math::{DVec2, DVec3, Ray};
 use octray_scene::ObjectId;
@@ -153,7 +154,7 @@ pub struct SurfaceHit {
 pub struct Counters {
     /// Rays asked for.
     pub rays: u64,
-    /// Cells of the solids' octree or grid entered, or bounding volumes tested.
+    /// Cells of octrees and grids entered, and bounding volumes tested.
     pub cells: u64,
     /// Rows of a hash table and nodes of a tree looked at to find cells.
     pub lookups: u64,
@@ -163,12 +164,36 @@ pub struct Counters {
     pub surface_tests: u64,
     /// Triangles intersected with a line.
     pub triangle_tests: u64,
+    /// Triangles not intersected again, because the ray had met them in an earlier cell.
+    pub mailbox: u64,
 }
 
 impl Counters {
     pub(crate) fn add_walk(&mut self, cost: &WalkCost) {
         self.nodes += cost.nodes;
         self.triangle_tests += cost.items;
+    }
+
+    pub(crate) fn add_search(&mut self, cost: &SearchCost) {
+        self.add_walk(&cost.walk);
+        self.cells += cost.steps.cells;
+        self.lookups += cost.steps.lookups;
+        self.mailbox += cost.mailbox;
+    }
+
+    /// The part of one of so many: together they are the whole.
+    pub(crate) fn share(&self, index: usize, of: usize) -> Self {
+        let (index, of) = (index as u64, of as u64);
+        let part = |count: u64| count / of + u64::from(index < count % of);
+        Self {
+            rays: part(self.rays),
+            cells: part(self.cells),
+            lookups: part(self.lookups),
+            mailbox: part(self.mailbox),
+            nodes: part(self.nodes),
+            surface_tests: part(self.surface_tests),
+            triangle_tests: part(self.triangle_tests),
+        }
     }
 }
 
@@ -180,5 +205,6 @@ impl std::ops::AddAssign for Counters {
         self.nodes += other.nodes;
         self.surface_tests += other.surface_tests;
         self.triangle_tests += other.triangle_tests;
+        self.mailbox += other.mailbox;
     }
 }

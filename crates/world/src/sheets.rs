@@ -3,14 +3,16 @@
 use std::ops::Range;
 use std::sync::Arc;
 
-use octray_geometry::mesh::{Placement, TrianglePoint, TriangleTree};
+use octray_geometry::mesh::{
+    Placement, SearchCost, SearchMemory, TrianglePoint, TriangleSearch, TriangleTree,
+};
 use octray_geometry::{FaceId, MaterialId, SceneFrame, Sheet, TriangleMesh};
 use octray_math::Interval;
 use octray_scene::{ObjectId, Scene, Shape};
-use octray_tree::{WalkCost, WideTreeConfig, WideTreeError};
+use octray_tree::WideTreeError;
 
-use crate::Counters;
 use crate::line::Line;
+use crate::{Counters, Method, WorldConfig};
 
 /// One mesh object's share of the triangles.
 #[derive(Debug)]
@@ -37,17 +39,33 @@ pub(crate) struct SheetHit {
     pub(crate) entering: bool,
 }
 
+/// How a method finds the triangles of sheets.
+fn search(config: &WorldConfig) -> TriangleSearch {
+    let method = config.method;
+    match (method, method.division()) {
+        (Method::Auto, _) => TriangleSearch::Wide(config.triangles),
+        (Method::Spheres, _) => TriangleSearch::Spheres,
+        (Method::Boxes, _) => TriangleSearch::Boxes,
+        (_, Some(division)) => TriangleSearch::Cells {
+            division,
+            table: config.table,
+            membership: method.membership(),
+            criteria: config.criteria,
+        },
+        (_, None) => TriangleSearch::All,
+    }
+}
+
 impl Sheets {
-    /// The mesh sheets of the scene; their triangles' faces are numbered from `first_face`. With a
-    /// configuration they get an octree.
+    /// The mesh sheets of the scene; their triangles' faces are numbered from `first_face`.
     ///
     /// # Errors
-    /// The octree would be too large.
+    /// The wide octree would be too large.
     pub(crate) fn prepare(
         scene: &Scene,
         frame: &SceneFrame,
         first_face: u32,
-        config: Option<&WideTreeConfig>,
+        config: &WorldConfig,
     ) -> Result<Self, WideTreeError> {
         let mut parts = Vec::new();
         let mut positions = Vec::new();
@@ -72,14 +90,16 @@ impl Sheets {
                 });
             }
         }
+        let objects: Vec<u32> = parts.iter().map(|part| part.first_triangle).collect();
+        let search = search(config);
         Ok(Self {
             parts,
-            triangles: TriangleTree::new(positions, triangles, config)?,
+            triangles: TriangleTree::new(positions, triangles, &objects, &search)?,
             first_face,
         })
     }
 
-    /// The triangles with their octree.
+    /// The triangles with their octree or cells.
     pub(crate) const fn triangles(&self) -> &TriangleTree {
         &self.triangles
     }
@@ -127,6 +147,7 @@ impl Sheets {
         &self,
         line: &Line,
         limit: f64,
+        memory: &mut SearchMemory,
         counters: &mut Counters,
         mut visit: impl FnMut(&SheetHit) -> f64,
     ) {
@@ -135,9 +156,9 @@ impl Sheets {
         }
         let departed = self.triangle(line.departure.face);
         let span = Interval::new(line.origin, limit.min(line.end));
-        let mut cost = WalkCost::default();
+        let mut cost = SearchCost::default();
         self.triangles
-            .closest(&line.ray, span, &mut cost, |triangle, hit, end| {
+            .closest(&line.ray, span, memory, &mut cost, |triangle, hit, end| {
                 let left = |from| self.triangles.are_coplanar(from, triangle);
                 if hit.t <= line.origin || departed.is_some_and(left) {
                     return end;
@@ -148,7 +169,7 @@ impl Sheets {
                     entering: hit.entering,
                 })
             });
-        counters.add_walk(&cost);
+        counters.add_search(&cost);
     }
 
     /// Shading data of a triangle that the line crosses.

@@ -4,7 +4,7 @@ use std::cell::Cell;
 use std::sync::{Arc, Mutex, PoisonError};
 
 use octray_geometry::FaceId;
-use octray_geometry::mesh::MeshError;
+use octray_geometry::mesh::{MeshError, TriangleMarks};
 use octray_math::Aabb;
 use octray_scene::{Scene, Shape};
 use octray_tree::{
@@ -83,8 +83,12 @@ pub struct WorldStats {
     pub objects_per_leaf: Tally,
     /// Memory by part.
     pub memory: MemoryStats,
-    /// The octree over the triangles of sheets.
+    /// The octree with wide nodes over the triangles of sheets.
     pub triangle_tree: Option<WideTreeStats>,
+    /// The cells over the triangles of sheets.
+    pub triangle_cells: Option<PartitionStats>,
+    /// What decided which triangles those cells list, and how many they do.
+    pub triangle_marks: Option<TriangleMarks>,
 }
 
 /// Working memory is handed from query to query instead of being made anew.
@@ -137,13 +141,14 @@ impl World {
         list: Option<&CellList>,
     ) -> Result<Self, WorldError> {
         check_face_count(&scene)?;
+        // Of mesh operands; see `Method`.
         let triangles = match config.method {
             Method::Brute => None,
             _ => Some(&config.triangles),
         };
         let place = Place::new(&scene);
         let solids = Solids::prepare(&scene, &place.frame, config, list, triangles)?;
-        let sheets = Sheets::prepare(&scene, &place.frame, solids.face_count(), triangles)?;
+        let sheets = Sheets::prepare(&scene, &place.frame, solids.face_count(), config)?;
         let opaque = scene
             .materials()
             .iter()
@@ -181,6 +186,7 @@ impl World {
     /// Figures about what was built.
     #[must_use]
     pub fn stats(&self) -> WorldStats {
+        let triangle_cells = self.sheets.triangles().cell_stats();
         WorldStats {
             objects: self.scene.objects().len(),
             surfaces: self.solids.surface_count(),
@@ -191,6 +197,8 @@ impl World {
             objects_per_leaf: self.objects_per_leaf(),
             memory: self.memory(),
             triangle_tree: self.sheets.triangles().tree_stats().copied(),
+            triangle_cells: triangle_cells.map(|(cells, _)| cells.clone()),
+            triangle_marks: triangle_cells.map(|(_, marks)| *marks),
         }
     }
 
@@ -201,30 +209,26 @@ impl World {
             .chain(self.sheets.triangles().tree_words())
     }
 
-    /// The nearest surface on each ray; `hits` is cleared and gets one hit per query.
-    ///
-    /// A ray that is not finite or has no direction meets nothing.
-    pub fn closest(&self, queries: &[RayQuery], hits: &mut Vec<Hit>, counters: &mut Counters) {
-        hits.clear();
-        counters.rays += queries.len() as u64;
-        self.scratch.with(|scratch| {
-            hits.extend(
-                queries
-                    .iter()
-                    .map(|query| self.closest_one(query, scratch, counters)),
-            );
-        });
-    }
-
     pub(crate) fn closest_one(
         &self,
         query: &RayQuery,
         scratch: &mut Scratch,
         counters: &mut Counters,
     ) -> Hit {
-        let Some(mut line) = self.line(query, false) else {
-            return Hit::MISS;
-        };
+        match self.line(query, false) {
+            Some(line) => self.closest_on_line(line, scratch, counters),
+            None => Hit::MISS,
+        }
+    }
+
+    /// The nearest surface on a half-line.
+    #[inline]
+    pub(crate) fn closest_on_line(
+        &self,
+        mut line: Line,
+        scratch: &mut Scratch,
+        counters: &mut Counters,
+    ) -> Hit {
         loop {
             match self.nearest(&line, scratch, counters) {
                 None => return Hit::MISS,
@@ -257,14 +261,19 @@ impl World {
                 limit_of(&best)
             });
         let mut sheet: Option<SheetHit> = None;
-        self.sheets
-            .visit_line(line, limit_of(&best), counters, |found| {
+        self.sheets.visit_line(
+            line,
+            limit_of(&best),
+            &mut scratch.triangles,
+            counters,
+            |found| {
                 let known = sheet.map_or(best, |hit| Some(Interface::of_sheet(&hit)));
                 if nearer(found.s, found.face, &known) {
                     sheet = Some(*found);
                 }
                 sheet.map_or(limit_of(&best), |hit| hit.s)
-            });
+            },
+        );
         if let Some(hit) = sheet {
             // Which space a sheet stands in matters only where light bends or fades.
             let region = if self.has_transparency() {
@@ -281,21 +290,6 @@ impl World {
         best
     }
 
-    /// Whether a surface that no light passes, of an object that casts shadows, lies on each ray;
-    /// `blocked` is cleared and gets one answer per query.
-    pub fn occluded(&self, queries: &[RayQuery], blocked: &mut Vec<bool>, counters: &mut Counters) {
-        blocked.clear();
-        counters.rays += queries.len() as u64;
-        self.scratch.with(|scratch| {
-            let stops = |face| self.blocks(face);
-            blocked.extend(
-                queries
-                    .iter()
-                    .map(|query| self.meets_any(query, &stops, scratch, counters)),
-            );
-        });
-    }
-
     /// Whether any of the faces that count lies on the ray.
     pub(crate) fn meets_any(
         &self,
@@ -304,13 +298,23 @@ impl World {
         scratch: &mut Scratch,
         counters: &mut Counters,
     ) -> bool {
-        let Some(line) = self.line(query, false) else {
-            return false;
-        };
+        let line = self.line(query, false);
+        line.is_some_and(|line| self.line_meets_any(&line, counts, scratch, counters))
+    }
+
+    /// Whether any of the faces that count lies on the half-line.
+    #[inline]
+    pub(crate) fn line_meets_any(
+        &self,
+        line: &Line,
+        counts: &impl Fn(FaceId) -> bool,
+        scratch: &mut Scratch,
+        counters: &mut Counters,
+    ) -> bool {
         let found = Cell::new(false);
         // Returns the parameter beyond which nothing matters any more.
         let visit = |s: f64, face: FaceId, entering: bool| {
-            let counts = s < line.end && counts(face) && !self.starts_on(&line, s, face, entering);
+            let counts = s < line.end && counts(face) && !self.starts_on(line, s, face, entering);
             found.set(found.get() || counts);
             if found.get() {
                 f64::NEG_INFINITY
@@ -318,13 +322,16 @@ impl World {
                 f64::INFINITY
             }
         };
-        self.sheets
-            .visit_line(&line, f64::INFINITY, counters, |hit| {
-                visit(hit.s, hit.face, hit.entering)
-            });
+        self.sheets.visit_line(
+            line,
+            f64::INFINITY,
+            &mut scratch.triangles,
+            counters,
+            |hit| visit(hit.s, hit.face, hit.entering),
+        );
         if !found.get() {
             self.solids
-                .sweep_line(&line, f64::INFINITY, scratch, counters, |change| {
+                .sweep_line(line, f64::INFINITY, scratch, counters, |change| {
                     change
                         .interface()
                         .map_or(f64::INFINITY, |i| visit(i.s, i.face, i.entering))
@@ -334,7 +341,7 @@ impl World {
     }
 
     /// Whether a face stops light.
-    fn blocks(&self, face: FaceId) -> bool {
+    pub(crate) fn blocks(&self, face: FaceId) -> bool {
         self.owner(face).is_some_and(|(object, material)| {
             self.opaque[material.0 as usize]
                 && self.scene.objects()[object.0 as usize].casts_shadows
@@ -374,11 +381,16 @@ impl World {
                 f64::INFINITY
             });
         let first_sheet = found.len();
-        self.sheets
-            .visit_line(line, f64::INFINITY, counters, |hit| {
+        self.sheets.visit_line(
+            line,
+            f64::INFINITY,
+            &mut scratch.triangles,
+            counters,
+            |hit| {
                 found.push(Interface::of_sheet(hit));
                 f64::INFINITY
-            });
+            },
+        );
         for sheet in &mut found[first_sheet..] {
             let region = self.solids.region_at(line, sheet.s, scratch, counters);
             (sheet.from, sheet.to) = (region, region);

@@ -273,8 +273,9 @@ fn aimed_lines_enter_and_leave_in_turn() {
             let ray = specimen.aimed_ray(&mut random);
             let mut entries = [0_u32; 2];
             let all = octray_math::Interval::ALL;
+            let (mut memory, mut cost) = Default::default();
             tree.triangles()
-                .all(&ray, all, &mut WalkCost::default(), |_, hit| {
+                .all(&ray, all, &mut memory, &mut cost, |_, hit| {
                     entries[usize::from(hit.entering)] += 1;
                 });
             assert_eq!(entries[0], entries[1], "{name}: {ray:?}");

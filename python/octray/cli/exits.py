@@ -12,6 +12,7 @@ class Exit(enum.IntEnum):
     FAILED = 1
     USAGE = 2
     SCENE = 3
+    PARTIAL = 4
     INTERRUPTED = 130
 
 

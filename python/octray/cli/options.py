@@ -98,6 +98,45 @@ def scene_argument(function: Callable[..., Any]) -> Callable[..., Any]:
     return function
 
 
+def picture_options(function: Callable[..., Any]) -> Callable[..., Any]:
+    """Add the options about which picture of a scene is rendered."""
+    for add in reversed(
+        (
+            click.option("--size", metavar="WxH", callback=parse_size, help="Size in pixels."),
+            click.option(
+                "--spp",
+                type=click.IntRange(min=1),
+                default=1,
+                show_default=True,
+                help="Samples per pixel; 1 is the pixel's centre.",
+            ),
+            click.option(
+                "--crop",
+                metavar="X0,Y0,X1,Y1",
+                callback=parse_crop,
+                help="Render only these pixels (row 0 at the top).",
+            ),
+            click.option(
+                "--viewall", is_flag=True, help="Move the camera to where it sees everything."
+            ),
+            click.option(
+                "--max-depth",
+                type=click.IntRange(min=1),
+                metavar="N",
+                help="Generations of rays; 1 is without mirrors and glass.",
+            ),
+            click.option(
+                "--threshold",
+                type=click.FloatRange(min=0),
+                metavar="X",
+                help="Rays that add less than this to a pixel are not followed.",
+            ),
+        )
+    ):
+        function = add(function)
+    return function
+
+
 def parse_cost(
     _ctx: click.Context, _param: click.Parameter, value: str | None
 ) -> float | str | None:

@@ -11,8 +11,7 @@ from octray.cli.exits import Exit, FailureError
 from octray.cli.messages import RejectedSceneError, load
 from octray.cli.options import (
     accel_option,
-    parse_crop,
-    parse_size,
+    picture_options,
     progress_option,
     quiet_option,
     scene_argument,
@@ -34,14 +33,7 @@ if TYPE_CHECKING:
 @click.option(
     "-o", "--output", metavar="FILE", help="Picture, .png or .exr; - is standard output (PNG)."
 )
-@click.option("--size", metavar="WxH", callback=parse_size, help="Size in pixels.")
-@click.option(
-    "--spp",
-    type=click.IntRange(min=1),
-    default=1,
-    show_default=True,
-    help="Samples per pixel; 1 is the pixel's centre.",
-)
+@picture_options
 @accel_option
 @tree_options
 @click.option(
@@ -52,31 +44,22 @@ if TYPE_CHECKING:
 @click.option("--load-cells", metavar="FILE", help="Build the octree from such a list.")
 @threads_option
 @click.option(
+    "--integrator",
+    type=click.Choice(["whitted", "cost"]),
+    default="whitted",
+    show_default=True,
+    help=(
+        "What a pixel shows: light (Whitted's recursive ray tracing), or what the same rays cost: "
+        "in a PNG a heat map, in an EXR steps, surfaces and triangles tested per sample."
+    ),
+)
+@click.option(
     "--view",
     type=click.Choice(["neutral", "standard", "raw"]),
     help="How light becomes colours in a PNG; by default what suits the file.",
 )
 @click.option(
-    "--crop",
-    metavar="X0,Y0,X1,Y1",
-    callback=parse_crop,
-    help="Render only these pixels (row 0 at the top).",
-)
-@click.option("--viewall", is_flag=True, help="Move the camera to where it sees everything.")
-@click.option(
     "--preview", is_flag=True, help="Write a coarse picture at once, then ever finer ones."
-)
-@click.option(
-    "--max-depth",
-    type=click.IntRange(min=1),
-    metavar="N",
-    help="Generations of rays; 1 is without mirrors and glass.",
-)
-@click.option(
-    "--threshold",
-    type=click.FloatRange(min=0),
-    metavar="X",
-    help="Rays that add less than this to a pixel are not followed.",
 )
 @click.option("--json", "as_json", is_flag=True, help="Print one report object.")
 @progress_option
@@ -136,7 +119,10 @@ class _Run:
             check_request(
                 **{
                     name: self.options[name]
-                    for name in ("size", "spp", "threads", "crop", "max_depth", "threshold")
+                    for name in (
+                        *("size", "spp", "threads", "crop", "max_depth", "threshold"),
+                        *("view", "integrator"),
+                    )
                 }
             )
         except ValueError as error:
@@ -158,6 +144,8 @@ class _Run:
         self.report.add_output(output, image)
         if not options["quiet"]:
             self._say(self._summary(output, image))
+            if image.report["cost"] is not None:
+                self._say(f"  {self._scale(image)}")
         if options["verbose"]:
             self._say(self.report.details())
         return Exit.OK
@@ -196,7 +184,10 @@ class _Run:
                 return scene.render(
                     **{
                         name: options[name]
-                        for name in ("size", "spp", "threads", "accel", "crop", "view")
+                        for name in (
+                            *("size", "spp", "threads", "accel", "crop", "view"),
+                            "integrator",
+                        )
                     },
                     max_depth=options["max_depth"],
                     threshold=options["threshold"],
@@ -237,6 +228,16 @@ class _Run:
             f"{output.name}: {image.width}x{image.height} in {duration(sum(phases.values()))}"
             f" (import {duration(phases['import_s'])}, build {duration(phases['build_s'])},"
             f" render {duration(phases['render_s'])}), {rate / scale:.3g} {unit}rays/s"
+        )
+
+    @staticmethod
+    def _scale(image: Image) -> str:
+        cost = image.report["cost"]
+        weights = cost["weights"]
+        return (
+            f"colours of a PNG: black is {cost['low']:g}, the brightest {cost['high']:.3g} or more"
+            " (99.5 % of the pixels are below), in tests of one surface per sample; a step weighs"
+            f" {weights['step']:g}, a triangle {weights['triangle']:g}"
         )
 
 

@@ -6,7 +6,8 @@ use octray_math::{Aabb, DAffine3, DVec3, Interval, Ray};
 use octray_tree::{WalkCost, WideTreeConfig};
 
 use super::{
-    FacetPlanes, MeshCrossing, MeshError, Placement, TriangleMesh, TrianglePoint, TriangleTree,
+    FacetPlanes, MeshCrossing, MeshError, Placement, SearchCost, SearchMemory, TriangleHit,
+    TriangleMesh, TrianglePoint, TriangleSearch, TriangleTree,
 };
 use crate::MaterialId;
 use crate::surface::Side;
@@ -38,7 +39,8 @@ impl MeshSolid {
         let placement = Placement::new(world_from_mesh);
         let positions = placement.positions(mesh).collect();
         let wound = mesh.triangles().iter().map(|&t| placement.wound(t));
-        let triangles = TriangleTree::new(positions, wound.collect(), config)?;
+        let search = config.map_or(TriangleSearch::All, |c| TriangleSearch::Wide(*c));
+        let triangles = TriangleTree::new(positions, wound.collect(), &[0], &search)?;
         Ok(Self {
             mesh: Arc::clone(mesh),
             placement,
@@ -79,15 +81,14 @@ impl MeshSolid {
     /// together; the lowest of those that face accordingly stands for them.
     pub fn crossings(&self, ray: &Ray, out: &mut Vec<MeshCrossing>, cost: &mut WalkCost) {
         let start = out.len();
-        self.triangles
-            .all(ray, Interval::ALL, cost, |triangle, hit| {
-                let bounds = || self.triangles.bounds(triangle);
-                out.push(MeshCrossing {
-                    t: self.planes.parameter(ray, triangle, hit, bounds),
-                    triangle,
-                    entering: hit.entering,
-                });
+        self.for_all(ray, Interval::ALL, cost, |triangle, hit| {
+            let bounds = || self.triangles.bounds(triangle);
+            out.push(MeshCrossing {
+                t: self.planes.parameter(ray, triangle, hit, bounds),
+                triangle,
+                entering: hit.entering,
             });
+        });
         out[start..].sort_unstable_by(|a, b| a.t.total_cmp(&b.t).then(a.triangle.cmp(&b.triangle)));
         let (mut read, mut kept, mut winding) = (start, start, 0i64);
         while read < out.len() {
@@ -122,11 +123,25 @@ impl MeshSolid {
         let mut winding = 0i64;
         let behind = Interval::new(f64::NEG_INFINITY, 0.0);
         let mut cost = WalkCost::default();
-        self.triangles
-            .all(&Ray::new(point, DVec3::X), behind, &mut cost, |_, hit| {
-                winding += if hit.entering { 1 } else { -1 };
-            });
+        self.for_all(&Ray::new(point, DVec3::X), behind, &mut cost, |_, hit| {
+            winding += if hit.entering { 1 } else { -1 };
+        });
         winding != 0
+    }
+
+    /// Every triangle that the line crosses in `span`.
+    #[inline]
+    fn for_all(
+        &self,
+        ray: &Ray,
+        span: Interval,
+        cost: &mut WalkCost,
+        visit: impl FnMut(u32, &TriangleHit),
+    ) {
+        // Only cells need memory.
+        let (mut memory, mut all) = (SearchMemory::default(), SearchCost::default());
+        self.triangles.all(ray, span, &mut memory, &mut all, visit);
+        *cost += all.walk;
     }
 
     /// On which side of the boundary a box lies; the inside is negative.

@@ -2,11 +2,13 @@
 
 mod develop;
 mod exr;
+mod heat;
 mod neutral;
 mod png;
 
 pub use develop::{develop, develop_color};
 pub use exr::encode_exr;
+pub use heat::{COST_WEIGHTS, HeatMap, heat_color};
 pub use neutral::neutral;
 pub use png::encode_png;
 

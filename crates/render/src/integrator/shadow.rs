@@ -5,6 +5,7 @@ use octray_math::DVec3;
 use octray_world::{Hit, RayQuery, World};
 
 use super::media::{medium_of, transmission};
+use crate::cost::Ledger;
 use crate::path::{ShadowState, to_vector};
 use crate::stats::RenderStats;
 use crate::tile::TileFilm;
@@ -47,13 +48,25 @@ impl<'a> ShadowTracer<'a> {
     ///
     /// Opaque surfaces are looked for first, in any order. Light that meets none goes on from
     /// one transparent surface to the next, unbent, and is multiplied by each one's
-    /// transmittance and by what the media between them leave.
-    pub fn trace(&mut self, states: &[ShadowState], film: &mut TileFilm, stats: &mut RenderStats) {
+    /// transmittance and by what the media between them leave. The ledger asks the world.
+    pub fn trace(
+        &mut self,
+        states: &[ShadowState],
+        film: &mut TileFilm,
+        ledger: &mut Ledger,
+        stats: &mut RenderStats,
+    ) {
         stats.rays.shadow += states.len() as u64;
         self.queries.clear();
         self.queries.extend(states.iter().map(ShadowState::query));
-        self.world
-            .occluded(&self.queries, &mut self.blocked, &mut stats.queries.shadow);
+        let cost = ledger.occluded(
+            self.world,
+            &self.queries,
+            states.iter(),
+            &mut self.blocked,
+            stats,
+        );
+        stats.queries.shadow += cost;
         let open = (0..states.len()).filter(|i| !self.blocked[*i]);
         self.walks.clear();
         self.walks.extend(open.map(|i| Walk {
@@ -69,7 +82,7 @@ impl<'a> ShadowTracer<'a> {
                 if self.walks.is_empty() {
                     break;
                 }
-                self.step(states, film, stats);
+                self.step(states, film, ledger, stats);
             }
             stats.hits.shadow += self.walks.len() as u64;
         } else {
@@ -80,9 +93,16 @@ impl<'a> ShadowTracer<'a> {
     }
 
     /// Takes every walk to its next surface, or to the lamp.
-    fn step(&mut self, states: &[ShadowState], film: &mut TileFilm, stats: &mut RenderStats) {
-        self.world
-            .closest(&self.queries, &mut self.hits, &mut stats.queries.shadow);
+    fn step(
+        &mut self,
+        states: &[ShadowState],
+        film: &mut TileFilm,
+        ledger: &mut Ledger,
+        stats: &mut RenderStats,
+    ) {
+        let walking = self.walks.iter().map(|walk| &states[walk.state]);
+        let cost = ledger.closest(self.world, &self.queries, walking, &mut self.hits, stats);
+        stats.queries.shadow += cost;
         let mut kept = 0;
         for index in 0..self.walks.len() {
             let (query, hit) = (self.queries[index], self.hits[index]);

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use octray_math::DVec3;
-use octray_render::RenderStats;
+use octray_render::{RenderConfig, RenderStats, Rendering, Shows, cost_channels};
 use octray_scene::{Light, Scene};
 use octray_world::{Counters, Criteria, Method, World, WorldConfig};
 
@@ -82,5 +82,63 @@ fn an_octree_saves_tests_of_every_kind_of_ray_and_shows_the_same_picture() {
         assert!(octree.surface_tests < brute.surface_tests, "{kind}");
         assert!(octree.cells > 0, "{kind}");
         assert_eq!(octree.rays, brute.rays, "{kind}");
+    }
+}
+
+/// A picture of costs, in a pool of so many threads.
+fn cost_picture(world: &World, threads: usize) -> Rendering {
+    let config = RenderConfig {
+        size: Some((26, 19)),
+        spp: 2,
+        shows: Shows::Cost,
+        ..RenderConfig::default()
+    };
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads);
+    pool.build()
+        .expect("a pool")
+        .install(|| shoot(world, &config))
+}
+
+#[test]
+fn the_pixels_of_a_cost_picture_add_up_to_the_counters() {
+    for method in Method::all() {
+        let world = with_method(&balls(), method);
+        let one = cost_picture(&world, 1);
+        let mut sum = DVec3::ZERO;
+        for y in 0..19 {
+            for x in 0..26 {
+                sum += one.film.mean(x, y) * 2.0;
+            }
+        }
+        // Whole numbers, and halves of them: exact.
+        assert_eq!(sum, cost_channels(&one.stats.queries.total()), "{method}");
+        let four = cost_picture(&world, 4);
+        assert_eq!(one.film, four.film, "{method}");
+        assert_eq!(one.stats, four.stats, "{method}");
+    }
+    let world = with_method(&balls(), Method::Auto);
+    let light = RenderConfig {
+        size: Some((26, 19)),
+        spp: 2,
+        ..RenderConfig::default()
+    };
+    let light = shoot(&world, &light);
+    assert_eq!(light.stats, cost_picture(&world, 1).stats, "the same rays");
+}
+
+#[test]
+fn brute_force_costs_every_surface_for_every_ray() {
+    // Balls that neither mirror nor let light through, and no lamp: one ray per sample.
+    let mut stage = Stage::new();
+    for i in 0..7 {
+        stage = stage.solid(ball(DVec3::new(f64::from(i), 0.0, 0.0), 0.4), diffuse(1.0));
+    }
+    let stage = stage.pinhole(DVec3::new(3.0, -5.0, 0.0), DVec3::Y);
+    let world = with_method(&Arc::new(stage.scene()), Method::Brute);
+    let costs = cost_picture(&world, 2);
+    for y in 0..19 {
+        for x in 0..26 {
+            assert_eq!(costs.film.mean(x, y), DVec3::new(0.0, 7.0, 0.0));
+        }
     }
 }

@@ -18,6 +18,7 @@ use crate::Tally;
 pub use build::Subdivide;
 pub use criteria::{Criteria, filled_share};
 pub use walk::WalkStack;
+pub(crate) use walk::{Slabs, Waiting};
 
 /// What a cell is.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -56,7 +57,7 @@ impl Node {
     }
 
     /// Whether the word of a node says that it is empty.
-    const fn is_empty(word: u32) -> bool {
+    pub(crate) const fn is_empty(word: u32) -> bool {
         word & 3 == 0
     }
 

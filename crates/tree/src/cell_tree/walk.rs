@@ -6,19 +6,19 @@ use super::{CellTree, Node};
 
 /// The cells that wait to be visited: working memory, kept from walk to walk.
 #[derive(Clone, Debug, Default)]
-pub struct WalkStack(Vec<Waiting>);
+pub struct WalkStack(pub(crate) Vec<Waiting>);
 
 /// A cell on the way: at most seven siblings wait on every level.
 #[derive(Clone, Copy, Debug)]
-struct Waiting {
-    node: u32,
-    min: DVec3,
-    size: f64,
-    span: Interval,
+pub(crate) struct Waiting {
+    pub(crate) node: u32,
+    pub(crate) min: DVec3,
+    pub(crate) size: f64,
+    pub(crate) span: Interval,
 }
 
 /// The line as the slab test wants it.
-struct Slabs {
+pub(crate) struct Slabs {
     origin: DVec3,
     inverse: DVec3,
     parallel: [bool; 3],
@@ -39,6 +39,21 @@ fn earlier(a: f64, b: f64) -> f64 {
 }
 
 impl Slabs {
+    /// For the cells of a cube of this size.
+    #[inline]
+    pub(crate) fn new(ray: &Ray, root_size: f64) -> Self {
+        let d = ray.direction;
+        Self {
+            origin: ray.origin,
+            inverse: d.recip(),
+            // A reciprocal that overflows is as good as parallel: the line leaves the slab beyond
+            // any parameter that matters.
+            parallel: d.to_array().map(|x| !x.recip().is_finite()),
+            backward: d.to_array().map(|x| x < 0.0),
+            margin: root_size * (0.5 * CellTree::CONTENT_MARGIN),
+        }
+    }
+
     /// The parameters at which the line is between `min` and `min + size` on one axis, grown by the
     /// margin.
     #[inline]
@@ -60,7 +75,7 @@ impl Slabs {
     }
 
     /// The part of `within` inside the cube grown by the margin.
-    fn clip(&self, min: DVec3, size: f64, within: Interval) -> Interval {
+    pub(crate) fn clip(&self, min: DVec3, size: f64, within: Interval) -> Interval {
         (0..3).fold(within, |span, axis| {
             span.intersection(&self.slab(axis, min[axis], size))
         })
@@ -110,18 +125,8 @@ impl CellTree {
         stack: &mut WalkStack,
         mut visit: impl FnMut(u32, Interval) -> f64,
     ) -> u64 {
-        let d = ray.direction;
-        let slabs = Slabs {
-            origin: ray.origin,
-            inverse: d.recip(),
-            // A reciprocal that overflows is as good as parallel: the line leaves the slab beyond
-            // any parameter that matters.
-            parallel: d.to_array().map(|x| !x.recip().is_finite()),
-            backward: d.to_array().map(|x| x < 0.0),
-            margin: self.root.size().x * (0.5 * Self::CONTENT_MARGIN),
-        };
+        let slabs = Slabs::new(ray, self.root.size().x);
         let mut limit = within.end;
-        let mut entered = 0;
         let span = slabs.clip(self.root.min, self.root.size().x, within);
         if span.is_empty() {
             return 0;
@@ -134,14 +139,28 @@ impl CellTree {
             size: self.root.size().x,
             span,
         });
+        self.walk_down(&slabs, stack, &mut limit, &mut visit)
+    }
+
+    /// Visits the occupied cells below those that wait, front to back; returns how many cells were
+    /// entered.
+    #[inline]
+    pub(crate) fn walk_down(
+        &self,
+        slabs: &Slabs,
+        stack: &mut Vec<Waiting>,
+        limit: &mut f64,
+        visit: &mut impl FnMut(u32, Interval) -> f64,
+    ) -> u64 {
+        let mut entered = 0;
         while let Some(cell) = stack.pop() {
-            if cell.span.start > limit {
+            if cell.span.start > *limit {
                 continue;
             }
             entered += 1;
             match Node::decode(cell.node) {
                 Node::Empty(_) => {}
-                Node::Occupied(leaf) => limit = limit.min(visit(leaf, cell.span)),
+                Node::Occupied(leaf) => *limit = limit.min(visit(leaf, cell.span)),
                 Node::Divided(block) => {
                     let size = cell.size * 0.5;
                     let children = &self.blocks[block as usize];

@@ -5,12 +5,14 @@
 //!
 //! [`CellTree::CONTENT_MARGIN`]: crate::CellTree::CONTENT_MARGIN
 
+mod beam;
 mod fujimoto_iwata;
 mod stepper;
 mod sung;
 #[cfg(test)]
 mod tests;
 
+pub use beam::BeamMemory;
 pub use fujimoto_iwata::TreePath;
 pub use sung::LeafSearch;
 

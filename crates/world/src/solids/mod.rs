@@ -16,7 +16,7 @@ mod volumes;
 use octray_geometry::csg::Face;
 use octray_geometry::mesh::{MeshSolid, TriangleTree};
 use octray_geometry::surface::Surface;
-use octray_math::Interval;
+use octray_math::{Interval, Ray};
 use octray_scene::ObjectId;
 use octray_tree::{CellTree, Node, Partition};
 
@@ -89,6 +89,30 @@ struct LeafVisit<'a> {
 }
 
 impl Solids {
+    /// Whether neighbouring rays travel together.
+    pub(crate) fn has_beams(&self) -> bool {
+        self.cells.as_ref().is_some_and(Partition::has_beams)
+    }
+
+    /// Takes a run of rays, each with the part that counts, through the upper cells together; until
+    /// [`Solids::leave`], only lines of the run may be swept. Returns what it cost.
+    pub(crate) fn enter(&self, rays: &[(Ray, Interval)], scratch: &mut Scratch) -> Counters {
+        let Some(cells) = &self.cells else {
+            return Counters::default();
+        };
+        let steps = cells.enter(rays, &mut scratch.walk);
+        Counters {
+            cells: steps.cells,
+            lookups: steps.lookups,
+            ..Counters::default()
+        }
+    }
+
+    /// The run has been answered.
+    pub(crate) const fn leave(&self, scratch: &mut Scratch) {
+        scratch.walk.leave();
+    }
+
     /// Sweeps along the line, cell by cell and front to back.
     ///
     /// `visit` gets every change and returns the parameter beyond which nothing matters any more. A

@@ -11,6 +11,7 @@ use crate::Counters;
 use crate::chords::{Chord, ChordScratch};
 use crate::line::Line;
 use octray_geometry::FaceId;
+use octray_geometry::mesh::SearchMemory;
 use octray_tree::{WalkCost, WalkMemory};
 
 /// A crossing of a surface, in the line's parameter.
@@ -71,6 +72,8 @@ pub(crate) struct Scratch {
     pub(super) inside: Vec<bool>,
     pub(super) inside_after: Vec<bool>,
     pub(super) walk: WalkMemory,
+    /// For the triangles of sheets.
+    pub(crate) triangles: SearchMemory,
     pub(super) volume_hits: VolumeHits,
     pub(crate) chords: ChordScratch,
     /// Chords that are only counted.

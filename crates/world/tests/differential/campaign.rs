@@ -2,6 +2,8 @@
 
 use std::collections::BTreeMap;
 
+use octray_math::{hash_combine, hash_u64};
+use octray_world::Method;
 use rayon::prelude::*;
 
 use crate::check::{Disagreement, Tally, check};
@@ -17,6 +19,8 @@ pub(crate) struct Campaign {
     pub(crate) first: u64,
     pub(crate) scenes: u64,
     pub(crate) rays_per_scene: u32,
+    /// The only method; else every scene draws one of all.
+    pub(crate) method: Option<Method>,
 }
 
 /// A disagreement and where it was found.
@@ -33,6 +37,8 @@ pub(crate) struct Found {
 pub(crate) struct Report {
     pub(crate) tally: Tally,
     pub(crate) by_family: BTreeMap<Family, Tally>,
+    /// Rays by each method.
+    pub(crate) by_method: BTreeMap<String, u64>,
     pub(crate) scenes: u64,
     /// The first of every scene that has any.
     pub(crate) found: Vec<Found>,
@@ -44,6 +50,9 @@ impl Report {
         self.scenes += other.scenes;
         for (family, tally) in other.by_family {
             self.by_family.entry(family).or_default().add(&tally);
+        }
+        for (method, rays) in other.by_method {
+            *self.by_method.entry(method).or_default() += rays;
         }
         self.found.extend(other.found);
         self
@@ -66,8 +75,10 @@ impl Report {
         };
         let all = line(&format!("{} scenes", self.scenes), &self.tally);
         let each = self.by_family.iter();
+        let methods = self.by_method.iter();
         std::iter::once(all)
             .chain(each.map(|(family, tally)| line(&format!("  {family:?}"), tally)))
+            .chain(methods.map(|(method, rays)| format!("  by {method}: {rays} rays")))
             .collect()
     }
 }
@@ -98,18 +109,33 @@ impl Campaign {
         report
     }
 
+    fn method_of(&self, scene: u64) -> Method {
+        let drawn = || {
+            let all = Method::all();
+            let key = hash_combine(hash_u64(!self.seed), scene);
+            all[(key % all.len() as u64) as usize]
+        };
+        self.method.unwrap_or_else(drawn)
+    }
+
     fn scene(&self, index: u64) -> Report {
         let mut report = Report {
             scenes: 1,
             ..Report::default()
         };
         let mut draw = Draw::new(self.seed, index);
-        let model = generator::scene(&mut draw);
+        let mut model = generator::scene(&mut draw);
+        model.method = self.method_of(index);
         let Some(subject) = model.prepare() else {
             return report;
         };
         let rays = Rays::new(&subject.oracle);
+        let asked = report
+            .by_method
+            .entry(model.method.to_string())
+            .or_default();
         for _ in 0..self.rays_per_scene {
+            *asked += 1;
             let (family, ray) = aim(&mut draw, &rays);
             let mut tally = Tally::default();
             let result = check(&subject, ray, &mut tally);

@@ -42,7 +42,7 @@ impl Tally {
 /// In which way the engine is wrong.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Wrong {
-    /// The octree and brute force differ.
+    /// The method and brute force differ.
     Accelerator,
     /// Crossings are not in order, or one does not begin where the last ended.
     Chain,
@@ -134,13 +134,13 @@ fn id(region: Region) -> Option<u32> {
     region.object().map(|object| object.0)
 }
 
-fn same<T: std::fmt::Debug + PartialEq>([octree, brute]: [T; 2]) -> Result<T, Disagreement> {
-    if octree == brute {
-        return Ok(octree);
+fn same<T: std::fmt::Debug + PartialEq>([engine, brute]: [T; 2]) -> Result<T, Disagreement> {
+    if engine == brute {
+        return Ok(engine);
     }
     Err(Disagreement {
         wrong: Wrong::Accelerator,
-        details: format!("octree {octree:#?}\nbrute {brute:#?}"),
+        details: format!("method {engine:#?}\nbrute {brute:#?}"),
     })
 }
 

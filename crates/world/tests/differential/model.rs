@@ -25,6 +25,8 @@ pub(crate) struct Model {
     /// Whether distinct boundaries may be as near to each other as the surface table's tolerance,
     /// so that thin slivers between them are real.
     pub(crate) delicate: bool,
+    /// What is compared with the oracle and with brute force.
+    pub(crate) method: Method,
 }
 
 /// A scene and a ray.
@@ -41,7 +43,7 @@ pub(crate) struct Subject {
     pub(crate) is_delicate: bool,
     /// For each object.
     pub(crate) is_bounded: Vec<bool>,
-    octree: World,
+    engine: World,
     brute: World,
 }
 
@@ -71,7 +73,7 @@ impl Model {
             };
             World::prepare(Arc::clone(&scene), &config).ok()
         };
-        let (octree, brute) = (world(Method::Auto)?, world(Method::Brute)?);
+        let (engine, brute) = (world(other.method)?, world(Method::Brute)?);
         let merged = brute.stats().merged_surfaces > 0;
         let is_bounded = |part: &Part| {
             let bounds = part.solid.bounds();
@@ -81,7 +83,7 @@ impl Model {
             oracle: Oracle::new(&*self.scene()?, merged),
             is_delicate: self.delicate,
             is_bounded: self.parts.iter().map(is_bounded).collect(),
-            octree,
+            engine,
             brute,
         })
     }
@@ -111,9 +113,9 @@ impl Model {
 }
 
 impl Subject {
-    /// All boundaries on a ray or its whole line, from the octree and by brute force.
+    /// All boundaries on a ray or its whole line, by the method and by brute force.
     pub(crate) fn crossings(&self, ray: Ray, whole: bool) -> [Vec<Hit>; 2] {
-        [&self.octree, &self.brute].map(|world| {
+        [&self.engine, &self.brute].map(|world| {
             let mut hits = Vec::new();
             let query = RayQuery::new(ray);
             world.crossings(&query, whole, &mut hits, &mut Counters::default());
@@ -121,9 +123,9 @@ impl Subject {
         })
     }
 
-    /// All chords of a line, from the octree and by brute force.
+    /// All chords of a line, by the method and by brute force.
     pub(crate) fn chords(&self, ray: Ray, overlaps: Overlaps) -> [Vec<Chord>; 2] {
-        [&self.octree, &self.brute].map(|world| {
+        [&self.engine, &self.brute].map(|world| {
             let mut chords = Vec::new();
             let query = RayQuery::new(ray);
             world.chords(
@@ -137,18 +139,18 @@ impl Subject {
         })
     }
 
-    /// The region of a point, from the octree and by brute force.
+    /// The region of a point, by the method and by brute force.
     pub(crate) fn region(&self, point: DVec3) -> [Region; 2] {
-        [&self.octree, &self.brute].map(|world| {
+        [&self.engine, &self.brute].map(|world| {
             let mut regions = Vec::new();
             world.regions(&[point], &mut regions, &mut Counters::default());
             regions[0]
         })
     }
 
-    /// Whether anything is on a ray, from the octree and by brute force.
+    /// Whether anything is on a ray, by the method and by brute force.
     pub(crate) fn occluded(&self, ray: Ray) -> [bool; 2] {
-        [&self.octree, &self.brute].map(|world| {
+        [&self.engine, &self.brute].map(|world| {
             let mut blocked = Vec::new();
             let query = RayQuery::new(ray);
             world.occluded(&[query], &mut blocked, &mut Counters::default());
@@ -156,9 +158,9 @@ impl Subject {
         })
     }
 
-    /// The first boundary on a ray, from the octree and by brute force.
+    /// The first boundary on a ray, by the method and by brute force.
     pub(crate) fn closest(&self, ray: Ray) -> [Hit; 2] {
-        [&self.octree, &self.brute].map(|world| {
+        [&self.engine, &self.brute].map(|world| {
             let mut hits = Vec::new();
             let query = RayQuery::new(ray);
             world.closest(&[query], &mut hits, &mut Counters::default());

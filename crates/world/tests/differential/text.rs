@@ -14,6 +14,7 @@ use std::sync::Arc;
 use octray_geometry::surface::QuadricForm;
 use octray_geometry::{ConvexPolyhedron, Polynomial, Primitive, Solid, SolidNode};
 use octray_math::{Aabb, DAffine3, DVec3, Ray};
+use octray_world::Method;
 
 use crate::model::{Case, Model, Part};
 
@@ -112,6 +113,9 @@ pub(crate) fn write_case(case: &Case) -> String {
     if case.model.delicate {
         out.push_str(" delicate");
     }
+    if case.model.method != Method::Auto {
+        write!(out, " (method {})", case.model.method).expect("a string takes all");
+    }
     for part in &case.model.parts {
         write!(out, " (object {} ", part.priority).expect("a string takes all");
         write_solid(&mut out, &part.solid);
@@ -186,6 +190,7 @@ pub(crate) fn parse(text: &str) -> Term {
 pub(crate) fn read_case(term: &Term) -> Case {
     let mut parts = Vec::new();
     let mut delicate = false;
+    let mut method = Method::Auto;
     let mut ray = None;
     for term in &term.list()[1..] {
         match term {
@@ -194,6 +199,9 @@ pub(crate) fn read_case(term: &Term) -> Case {
                 priority: terms[1].number() as i32,
                 solid: read_solid(&terms[2]),
             }),
+            Term::List(terms) if terms[0].word() == "method" => {
+                method = terms[1].word().parse().expect("a method");
+            }
             Term::List(terms) => {
                 let v: Vec<f64> = terms[1..].iter().map(Term::number).collect();
                 ray = Some(Ray::new(DVec3::from_slice(&v), DVec3::from_slice(&v[3..])));
@@ -201,7 +209,11 @@ pub(crate) fn read_case(term: &Term) -> Case {
         }
     }
     let ray = ray.expect("a case has a ray");
-    let model = Model { parts, delicate };
+    let model = Model {
+        parts,
+        delicate,
+        method,
+    };
     Case { model, ray }
 }
 

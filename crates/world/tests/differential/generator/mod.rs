@@ -10,6 +10,7 @@ mod shapes;
 
 use octray_geometry::surface::SURFACE_TOLERANCE;
 use octray_geometry::{Primitive, Solid, SolidNode};
+use octray_world::Method;
 
 use crate::draw::Draw;
 use crate::model::{Model, Part};
@@ -110,6 +111,7 @@ pub(crate) fn scene(draw: &mut Draw) -> Model {
     // A polynomial may have a factor that is a plane: no table knows, and slivers are real.
     let products = parts.iter().any(|part| has_polynomial(&part.solid));
     Model {
+        method: Method::Auto,
         parts,
         delicate: products || lattice.nudge == Nudge::Tolerances,
     }

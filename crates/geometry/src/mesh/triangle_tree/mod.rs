@@ -1,0 +1,278 @@
+//! Triangles where they stand, and those that a line crosses.
+
+mod cells;
+mod membership;
+mod search;
+mod volumes;
+
+use std::ops::Range;
+
+use octray_math::{Aabb, DVec3, Interval, Ray};
+use octray_tree::{PartitionStats, WideTree, WideTreeError, WideTreeStats};
+
+use super::{TriangleHit, TriangleRay};
+use cells::TriangleCells;
+pub use membership::TriangleMarks;
+pub use search::{SearchCost, SearchMemory, TriangleSearch};
+use volumes::ObjectVolumes;
+
+/// Triangles of world coordinates with a structure that finds those on a line, or without one: the
+/// oracle.
+///
+/// Answers are the same bits whatever the structure.
+#[derive(Clone, Debug)]
+pub struct TriangleTree {
+    positions: Vec<DVec3>,
+    triangles: Vec<[u32; 3]>,
+    index: Index,
+}
+
+/// What finds the triangles on a line; see [`TriangleSearch`].
+#[derive(Clone, Debug)]
+enum Index {
+    All,
+    Wide(WideTree),
+    Volumes(ObjectVolumes),
+    Cells(Box<TriangleCells>),
+}
+
+impl TriangleTree {
+    /// Takes corners as indices into `positions`, and the index of the first triangle of each object
+    /// (increasing, the first 0): only volumes around objects ask for them. Works inside the current
+    /// thread pool; the result does not depend on it.
+    ///
+    /// # Errors
+    /// The wide tree would be too large; see [`WideTreeError`].
+    ///
+    /// # Panics
+    /// If an index is out of range.
+    pub fn new(
+        positions: Vec<DVec3>,
+        triangles: Vec<[u32; 3]>,
+        objects: &[u32],
+        search: &TriangleSearch,
+    ) -> Result<Self, WideTreeError> {
+        let mut all = Self {
+            positions,
+            triangles,
+            index: Index::All,
+        };
+        let count = all.len() as u32;
+        all.index = match *search {
+            TriangleSearch::All => Index::All,
+            TriangleSearch::Wide(config) => {
+                let bounds: Vec<Aabb> = (0..count).map(|i| all.bounds(i)).collect();
+                Index::Wide(WideTree::build(&bounds, &config)?)
+            }
+            TriangleSearch::Spheres | TriangleSearch::Boxes => {
+                let ends = objects.iter().skip(1).copied().chain([count]);
+                let ranges = objects
+                    .iter()
+                    .zip(ends)
+                    .map(|(&a, b)| Range { start: a, end: b });
+                let spheres = *search == TriangleSearch::Spheres;
+                Index::Volumes(ObjectVolumes::new(ranges, |t| all.corners(t), spheres))
+            }
+            TriangleSearch::Cells {
+                division,
+                table,
+                membership,
+                criteria,
+            } => TriangleCells::build(
+                &all.positions,
+                &all.triangles,
+                (division, table),
+                membership,
+                &criteria,
+            )
+            .map_or(Index::All, |cells| Index::Cells(Box::new(cells))),
+        };
+        Ok(all)
+    }
+
+    /// How many triangles there are.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.triangles.len()
+    }
+
+    /// Whether there are none.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.triangles.is_empty()
+    }
+
+    /// The corners of a triangle.
+    #[must_use]
+    #[inline]
+    pub fn corners(&self, triangle: u32) -> [DVec3; 3] {
+        let [a, b, c] = self.triangles[triangle as usize];
+        let p = &self.positions;
+        [p[a as usize], p[b as usize], p[c as usize]]
+    }
+
+    /// Whether two triangles lie in one plane, exactly: a line that leaves one for good cannot cross
+    /// the other. Triangles that stand in a file twice do, and so do overlapping ones of one level.
+    #[must_use]
+    pub fn are_coplanar(&self, a: u32, b: u32) -> bool {
+        let coord = |p: DVec3| robust::Coord3D {
+            x: p.x,
+            y: p.y,
+            z: p.z,
+        };
+        let [p, q, r] = self.corners(a).map(coord);
+        let on_plane = |s: DVec3| robust::orient3d(p, q, r, coord(s)) == 0.0;
+        a == b || self.corners(b).into_iter().all(on_plane)
+    }
+
+    /// The box around a triangle.
+    pub(super) fn bounds(&self, triangle: u32) -> Aabb {
+        Aabb::from_points(self.corners(triangle))
+    }
+
+    /// Bytes of the triangles and their corners.
+    #[must_use]
+    pub fn bytes(&self) -> u64 {
+        (size_of_val(self.positions.as_slice()) + size_of_val(self.triangles.as_slice())) as u64
+    }
+
+    /// Figures about the wide octree, if there is one.
+    #[must_use]
+    pub const fn tree_stats(&self) -> Option<&WideTreeStats> {
+        match &self.index {
+            Index::Wide(tree) => Some(tree.stats()),
+            _ => None,
+        }
+    }
+
+    /// Figures about the cells, and what decided what they list, if there are any.
+    #[must_use]
+    pub fn cell_stats(&self) -> Option<(&PartitionStats, &TriangleMarks)> {
+        match &self.index {
+            Index::Cells(cells) => Some((cells.stats(), cells.marks())),
+            _ => None,
+        }
+    }
+
+    /// The octree or the cells as words: equal for equal triangles, whatever built it.
+    pub fn tree_words(&self) -> Box<dyn Iterator<Item = u32> + '_> {
+        match &self.index {
+            Index::All | Index::Volumes(_) => Box::new(std::iter::empty()),
+            Index::Wide(tree) => Box::new(tree.bytes().into_iter().flat_map(|part| {
+                let (words, _) = part.as_chunks();
+                words.iter().map(|&word| u32::from_ne_bytes(word))
+            })),
+            Index::Cells(cells) => Box::new(cells.words()),
+        }
+    }
+
+    /// Shows `visit` the triangles that the line crosses in `span` (ends included), until nothing
+    /// better can come: `visit(triangle, hit, end)` returns the new end of the span, or `end`.
+    ///
+    /// All triangles up to the final end are shown, those at the end itself too, each once and in no
+    /// particular order. `cost.walk.items` counts triangles tested.
+    #[inline]
+    pub fn closest(
+        &self,
+        ray: &Ray,
+        span: Interval,
+        memory: &mut SearchMemory,
+        cost: &mut SearchCost,
+        mut visit: impl FnMut(u32, &TriangleHit, f64) -> f64,
+    ) {
+        let line = TriangleRay::new(ray);
+        let test = |triangle: u32, end: f64| match line.intersect(self.corners(triangle)) {
+            Some(hit) if span.start <= hit.t && hit.t <= end => {
+                // Only ever shortens the span.
+                let limit = visit(triangle, &hit, end);
+                if limit < end { limit } else { end }
+            }
+            _ => end,
+        };
+        match &self.index {
+            Index::Wide(tree) => tree.closest(ray, span, &mut cost.walk, test),
+            _ => self.propose(ray, span, memory, cost, test),
+        }
+    }
+
+    /// Whether `visit` is true of any triangle that the line crosses in `span`; stops at the first.
+    #[inline]
+    pub fn any(
+        &self,
+        ray: &Ray,
+        span: Interval,
+        memory: &mut SearchMemory,
+        cost: &mut SearchCost,
+        mut visit: impl FnMut(u32, &TriangleHit) -> bool,
+    ) -> bool {
+        let line = TriangleRay::new(ray);
+        let mut test = |triangle: u32| {
+            line.intersect(self.corners(triangle))
+                .is_some_and(|hit| span.contains(hit.t) && visit(triangle, &hit))
+        };
+        if let Index::Wide(tree) = &self.index {
+            return tree.any(ray, span, &mut cost.walk, test);
+        }
+        let mut found = false;
+        self.propose(ray, span, memory, cost, |triangle, end| {
+            found = found || test(triangle);
+            if found { f64::NEG_INFINITY } else { end }
+        });
+        found
+    }
+
+    /// Shows `visit` every triangle that the line crosses in `span`, each once and in no particular
+    /// order.
+    #[inline]
+    pub fn all(
+        &self,
+        ray: &Ray,
+        span: Interval,
+        memory: &mut SearchMemory,
+        cost: &mut SearchCost,
+        mut visit: impl FnMut(u32, &TriangleHit),
+    ) {
+        self.closest(ray, span, memory, cost, |triangle, hit, end| {
+            visit(triangle, hit);
+            end
+        });
+    }
+
+    /// Shows `test` the triangles that may lie on the line in `span`, each once; it returns the new
+    /// end of the span.
+    fn propose(
+        &self,
+        ray: &Ray,
+        span: Interval,
+        memory: &mut SearchMemory,
+        cost: &mut SearchCost,
+        mut test: impl FnMut(u32, f64) -> f64,
+    ) {
+        match &self.index {
+            Index::Volumes(volumes) => volumes.visit(ray, span, cost, test),
+            Index::Cells(cells) if cells.can_walk(ray) => {
+                cells.visit(ray, span, memory, cost, test);
+            }
+            _ => {
+                let mut end = span.end;
+                for triangle in 0..self.triangles.len() as u32 {
+                    if end < span.start {
+                        return;
+                    }
+                    cost.walk.items += 1;
+                    end = test(triangle, end);
+                }
+            }
+        }
+    }
+
+    /// Whether the box of any triangle overlaps `region`.
+    #[must_use]
+    pub fn overlaps(&self, region: &Aabb) -> bool {
+        let near = |triangle: u32| self.bounds(triangle).overlaps(region);
+        match &self.index {
+            Index::Wide(tree) => tree.any_overlapping(region, near),
+            _ => (0..self.triangles.len() as u32).any(near),
+        }
+    }
+}

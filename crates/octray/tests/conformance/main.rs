@@ -1,0 +1,207 @@
+//! One suite for every method over whole scenes: pictures and answers to the bit as by brute force.
+//!
+//! By default small scenes (up to 2,000 primitives, and not much work) are rendered by every method.
+//! The rest is dealt a selection of combinations that has every pair, with smaller pictures; large
+//! meshes are asked by rays.
+//! `OCTRAY_CONFORMANCE=full` (what `make conformance` sets) takes the full product and the full size
+//! everywhere;
+//! `OCTRAY_CONFORMANCE_SCENE` takes only the scenes whose name contains its value.
+
+mod combination;
+#[path = "../corpus/mod.rs"]
+mod corpus;
+mod evidence;
+mod scenes;
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+use combination::{Combination, pairwise, product, usual};
+use evidence::{Evidence, Questions, brute_force_tests};
+use rayon::prelude::*;
+use scenes::{Collection, Specimen};
+
+/// Scenes of more primitives are not small.
+const SMALL: usize = 2_000;
+/// Nor are those of which brute force, for 16 x 12 pixels, makes more intersection tests.
+const LITTLE_WORK: u64 = 60_000;
+/// The selection goes round among so many large scenes, or meshes.
+const HANDS: usize = 4;
+
+/// How a scene is looked at.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+enum Class {
+    Small,
+    Large,
+    Mesh,
+}
+
+impl Class {
+    fn of(specimen: &Specimen) -> Self {
+        if specimen.primitives > SMALL {
+            let is_mesh = specimen.is_mesh;
+            return if is_mesh { Self::Mesh } else { Self::Large };
+        }
+        if brute_force_tests(specimen, PREVIEW) > LITTLE_WORK {
+            Self::Large
+        } else {
+            Self::Small
+        }
+    }
+
+    const fn questions(self, full: bool) -> Questions {
+        let (picture, rays) = match (self, full) {
+            (Self::Small, _) | (Self::Large, true) => (Some((64, 48)), 64),
+            (Self::Large, false) => (Some(PREVIEW), 64),
+            (Self::Mesh, _) => (None, 2_000),
+        };
+        Questions { picture, rays }
+    }
+
+    /// The combinations for one of the class, by its place there.
+    fn combinations(self, place: usize, full: bool) -> Vec<Combination> {
+        match (self, full) {
+            (_, true) => product(),
+            (Self::Small, _) => usual(),
+            (Self::Large | Self::Mesh, _) => {
+                let all = pairwise().into_iter().skip(place % HANDS);
+                all.step_by(HANDS).collect()
+            }
+        }
+    }
+}
+
+const PREVIEW: (u32, u32) = (16, 12);
+
+/// One scene's share of the work.
+struct Subject {
+    specimen: Specimen,
+    class: Class,
+    questions: Questions,
+    brute: Evidence,
+}
+
+#[derive(Default)]
+struct Row {
+    scenes: usize,
+    combinations: BTreeSet<String>,
+    worlds: usize,
+    pixels: u64,
+    rays: u64,
+    differences: usize,
+}
+
+#[test]
+#[expect(clippy::print_stdout, reason = "what was compared is the result")]
+#[expect(clippy::print_stderr, reason = "long runs say how far they are")]
+fn every_method_shows_what_brute_force_shows() {
+    let full = std::env::var("OCTRAY_CONFORMANCE").is_ok_and(|value| value == "full");
+    let only = std::env::var("OCTRAY_CONFORMANCE_SCENE").unwrap_or_default();
+    let Collection {
+        mut specimens,
+        skipped,
+    } = Collection::all();
+    for reason in skipped {
+        println!("skipped: {reason}");
+    }
+    specimens.retain(|specimen| specimen.name.contains(&only));
+    let subjects = distinct(specimens, full);
+    let mut places: BTreeMap<Class, usize> = BTreeMap::new();
+    let mut work = Vec::new();
+    for subject in &subjects {
+        let place = places.entry(subject.class).or_default();
+        work.push((subject, subject.class.combinations(*place, full)));
+        *place += 1;
+    }
+    let done = AtomicUsize::new(0);
+    let look = |(subject, combinations): &(&Subject, Vec<Combination>)| {
+        let difference = |combination| subject.difference(combination);
+        let found: Vec<String> = combinations.par_iter().filter_map(difference).collect();
+        let done = done.fetch_add(1, Ordering::Relaxed) + 1;
+        let (name, all) = (&subject.specimen.name, subjects.len());
+        eprintln!("{done} of {all}: {name}, {} differences", found.len());
+        found
+    };
+    let found: Vec<Vec<String>> = work.par_iter().map(look).collect();
+
+    let mut table: BTreeMap<Class, Row> = BTreeMap::new();
+    for ((subject, combinations), found) in work.iter().zip(&found) {
+        let row = table.entry(subject.class).or_default();
+        let (pixels, rays) = subject.brute.counts();
+        row.scenes += 1;
+        row.combinations
+            .extend(combinations.iter().map(ToString::to_string));
+        row.worlds += combinations.len();
+        row.pixels += pixels * combinations.len() as u64;
+        row.rays += rays * combinations.len() as u64;
+        row.differences += found.len();
+    }
+    println!("scenes   number  combinations  worlds     pixels       rays  differences");
+    for (class, row) in &table {
+        println!(
+            "{:8} {:6} {:13} {:7} {:10} {:10} {:12}",
+            format!("{class:?}").to_lowercase(),
+            row.scenes,
+            row.combinations.len(),
+            row.worlds,
+            row.pixels,
+            row.rays,
+            row.differences
+        );
+    }
+    let differences: Vec<String> = found.into_iter().flatten().collect();
+    assert!(
+        differences.is_empty(),
+        "{} differences, the first ones:\n{}",
+        differences.len(),
+        differences[..differences.len().min(12)].join("\n")
+    );
+}
+
+impl Subject {
+    fn difference(&self, combination: &Combination) -> Option<String> {
+        let evidence = Evidence::of(&self.specimen, &combination.config(), self.questions);
+        let difference = evidence.difference(&self.brute)?;
+        Some(format!(
+            "{} by {combination}: {difference}",
+            self.specimen.name
+        ))
+    }
+}
+
+/// What brute force makes of each scene; of scenes that look and answer alike, the first.
+#[expect(clippy::print_stdout, reason = "a scene that is left out is said")]
+fn distinct(specimens: Vec<Specimen>, full: bool) -> Vec<Subject> {
+    let by_brute_force = |specimen: Specimen| {
+        let class = Class::of(&specimen);
+        let questions = class.questions(full);
+        let config = Combination::BRUTE.config();
+        Subject {
+            brute: Evidence::of(&specimen, &config, questions),
+            class,
+            questions,
+            specimen,
+        }
+    };
+    let all: Vec<Subject> = specimens.into_par_iter().map(by_brute_force).collect();
+    let mut subjects: Vec<Subject> = Vec::new();
+    for subject in all {
+        let name = &subject.specimen.name;
+        let twin = |other: &&Subject| {
+            other.specimen.primitives == subject.specimen.primitives && other.brute == subject.brute
+        };
+        if let Some(other) = subjects.iter().find(twin) {
+            println!("skipped: {name} is the same as {}", other.specimen.name);
+        } else {
+            subjects.push(subject);
+        }
+    }
+    subjects
+}
+
+#[test]
+fn the_hands_together_hold_the_selection() {
+    let hands = (0..HANDS).flat_map(|place| Class::Large.combinations(place, false));
+    let names: BTreeSet<String> = hands.map(|c| c.to_string()).collect();
+    assert_eq!(names, pairwise().iter().map(ToString::to_string).collect());
+}
