@@ -410,6 +410,14 @@ class Scene:
         tree_memory: int | None = None,
         lvsi_table: Literal["prime", "power-of-two"] | None = None,
         lvsi_load: float | None = None,
+        cells: _Path | None = None,
+    ) -> None: ...
+    def dump_cells(
+        self,
+        path: _Path,
+        *,
+        accel: Accel = "octree",
+        threads: int | None = None,
     ) -> None: ...
     def stats(self, *, accel: Accel = "auto", threads: int | None = None) -> dict[str, Any]: ...
     def cells(

@@ -1,5 +1,7 @@
 //! The scene: a builder that Python code adds to.
 
+use std::path::PathBuf;
+
 use numpy::PyArrayDyn;
 use octray::geometry::Sheet;
 use octray::import::dress;
@@ -23,7 +25,7 @@ use crate::queries::{self, Crossings, Hits, Intersections};
 use crate::render::{self, Request};
 use crate::solid::Solid;
 use crate::structures;
-use crate::world::{Prepared, completed, prepare, prepared};
+use crate::world::{Prepared, completed, prepare, prepared, read_cells, write_cells};
 
 /// Objects, lights, a camera and a background.
 #[pyclass(module = "octray")]
@@ -258,10 +260,12 @@ impl Scene {
     /// `tree_share`: a cell of which its objects' boxes fill more than this share is not divided.
     /// `tree_memory`: the bytes that a tree may take; what does not fit is left undivided (a tree of
     /// triangles is refused), and reported. `lvsi_table` ("prime" or "power-of-two") and `lvsi_load`
-    /// (rows used for each row of the table) say how large a hash table is.
+    /// (rows used for each row of the table) say how large a hash table is. `cells`: the path of a
+    /// list of cells (`dump_cells`) along which the octree over solids is built.
     #[pyo3(signature = (
         *, accel = "auto", threads = None, tree_objects = None, tree_depth = None, tree_cost = None,
-        tree_share = None, tree_memory = None, lvsi_table = None, lvsi_load = None
+        tree_share = None, tree_memory = None, lvsi_table = None, lvsi_load = None,
+        cells = None
     ))]
     #[expect(clippy::too_many_arguments, reason = "all by keyword")]
     fn prepare(
@@ -275,6 +279,7 @@ impl Scene {
         tree_memory: Option<u64>,
         lvsi_table: Option<&str>,
         lvsi_load: Option<f64>,
+        cells: Option<PathBuf>,
     ) -> PyResult<()> {
         let building = Building {
             objects: tree_objects,
@@ -285,7 +290,21 @@ impl Scene {
             table: lvsi_table,
             load: lvsi_load,
         };
-        prepare(slf, building.config(accel)?, threads).map(|_| ())
+        let config = building.config(accel)?;
+        let cells = cells.map(|path| read_cells(&path)).transpose()?;
+        prepare(slf, config, cells, threads).map(|_| ())
+    }
+
+    /// Writes the occupied cells of the octree over solids, each with the primitives that it may
+    /// touch, as text that `prepare` takes as `cells`.
+    #[pyo3(signature = (path, *, accel = "octree", threads = None))]
+    fn dump_cells(
+        slf: &Bound<'_, Self>,
+        path: PathBuf,
+        accel: &str,
+        threads: Option<usize>,
+    ) -> PyResult<()> {
+        write_cells(&path, &prepared(slf, accel, threads)?)
     }
 
     /// Figures about what a method builds: `method`, `build_s`, `trees`, `memory` and `world`, as in

@@ -1,16 +1,18 @@
 //! The scene made ready for rays, kept until the scene changes.
 
+use std::path::Path;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use octray::import::dress;
 use octray::math::{Aabb, DVec3};
 use octray::scene;
-use octray::world::{Method, MethodError, World, WorldConfig};
+use octray::world::{CellList, Method, MethodError, World, WorldConfig, WorldError};
 use pyo3::exceptions::{PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
 
 use crate::diagnostics::invalid_scene;
+use crate::files;
 use crate::pool::pool;
 use crate::scene::Scene;
 use crate::task;
@@ -52,13 +54,33 @@ pub(crate) fn prepared(
         ..WorldConfig::default()
     };
     let known = scene.try_borrow()?.prepared(config.method).cloned();
-    known.map_or_else(|| prepare(scene, config, threads), Ok)
+    known.map_or_else(|| prepare(scene, config, None, threads), Ok)
 }
 
-/// The scene's world, made now and kept for the queries to come.
+/// The list of cells in a file.
+pub(crate) fn read_cells(path: &Path) -> PyResult<CellList> {
+    let text = std::fs::read_to_string(path)?;
+    CellList::parse(&text)
+        .map_err(|error| PyValueError::new_err(format!("{}: {error}", path.display())))
+}
+
+/// Writes the cells of the octree over solids as a list.
+pub(crate) fn write_cells(path: &Path, prepared: &Prepared) -> PyResult<()> {
+    let list = prepared.world.cell_list().ok_or_else(|| {
+        let method = prepared.method;
+        PyValueError::new_err(format!(
+            "`{method}` makes no octree over solids of this scene"
+        ))
+    })?;
+    Ok(files::replace(path, list.to_string().as_bytes())?)
+}
+
+/// The scene's world, made now and kept for the queries to come; along a list of cells if there is
+/// one.
 pub(crate) fn prepare(
     scene: &Bound<'_, Scene>,
     config: WorldConfig,
+    cells: Option<CellList>,
     threads: Option<usize>,
 ) -> PyResult<Prepared> {
     let py = scene.py();
@@ -70,10 +92,16 @@ pub(crate) fn prepare(
     };
     let start = Instant::now();
     let world = task::run(py, move |_| {
-        pool.install(|| World::prepare(Arc::new(plain), &config))
+        pool.install(|| match &cells {
+            Some(cells) => World::prepare_from_cells(Arc::new(plain), &config, cells),
+            None => World::prepare(Arc::new(plain), &config),
+        })
     })
     .inspect_err(|_| crate::pool::discard())?;
-    let world = world.map_err(|error| invalid_scene(py, &[error]))?;
+    let world = world.map_err(|error| match error {
+        WorldError::Cells(error) => PyValueError::new_err(error.to_string()),
+        error => invalid_scene(py, &[error]),
+    })?;
     let prepared = Prepared {
         world: Arc::new(world),
         method,

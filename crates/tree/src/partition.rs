@@ -23,6 +23,17 @@ pub enum Encoding {
     Lvsi(LvsiStore),
 }
 
+impl Encoding {
+    /// The deepest level that it can hold.
+    #[must_use]
+    pub const fn max_depth(self) -> u32 {
+        match self {
+            Self::Lvsi(LvsiStore::Occupied) => UNITS_DEPTH,
+            _ => octray_math::MAX_DEPTH,
+        }
+    }
+}
+
 /// How an octree is walked.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Traversal {
@@ -171,9 +182,7 @@ impl Partition {
         criteria: &Criteria,
     ) -> (Self, Vec<S::Content>) {
         let mut criteria = *criteria;
-        if encoding == Encoding::Lvsi(LvsiStore::Occupied) {
-            criteria.max_depth = criteria.max_depth.min(UNITS_DEPTH);
-        }
+        criteria.max_depth = criteria.max_depth.min(encoding.max_depth());
         let (tree, contents) =
             CellTree::build(enclosing_cube(bounds), content, subdivide, &criteria);
         let mut stats = PartitionStats {

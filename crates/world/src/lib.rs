@@ -6,6 +6,7 @@
 
 mod batch;
 mod beam;
+mod cell_list;
 mod chords;
 mod faces;
 mod figures;
@@ -21,6 +22,7 @@ mod surfaces;
 mod world;
 
 pub use batch::{Batch, BatchError, Lists, RayRow, row_query};
+pub use cell_list::{CellList, CellListError};
 pub use chords::{Chord, ChordEnd, Overlaps};
 pub use figures::{CellsOf, MemoryStats, WorldCell};
 pub use method::{Method, MethodError};

@@ -15,7 +15,9 @@ use thiserror::Error;
 use crate::line::{Line, Place};
 use crate::sheets::{SheetHit, Sheets};
 use crate::solids::{Interface, Scratch, Solids};
-use crate::{CellsOf, Counters, Hit, MemoryStats, Method, RayQuery, Region};
+use crate::{
+    CellList, CellListError, CellsOf, Counters, Hit, MemoryStats, Method, RayQuery, Region,
+};
 
 /// How to prepare a world.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -44,6 +46,9 @@ pub enum WorldError {
     /// The octree over the triangles of sheets would be too large.
     #[error(transparent)]
     Triangles(#[from] WideTreeError),
+    /// The list of cells cannot be used.
+    #[error(transparent)]
+    Cells(#[from] CellListError),
     /// Faces and triangles together outnumber their ids.
     #[error("the scene has more than 2^30 faces and triangles")]
     TooManyFaces,
@@ -111,6 +116,34 @@ impl World {
     /// # Errors
     /// See [`WorldError`].
     pub fn prepare(scene: Arc<Scene>, config: &WorldConfig) -> Result<Self, WorldError> {
+        Self::make(scene, config, None)
+    }
+
+    /// Builds the octree over solids along a list of cells. Of the criteria only the limit of memory
+    /// counts.
+    ///
+    /// # Errors
+    /// Also where the list is of another scene or the method has no octree for it.
+    pub fn prepare_from_cells(
+        scene: Arc<Scene>,
+        config: &WorldConfig,
+        list: &CellList,
+    ) -> Result<Self, WorldError> {
+        Self::make(scene, config, Some(list))
+    }
+
+    /// The occupied cells of the octree over solids with the primitives that they touch; `None`
+    /// where the method has no octree or there is nothing to make it over.
+    #[must_use]
+    pub fn cell_list(&self) -> Option<CellList> {
+        self.solids.cell_list(&self.scene, &self.place.frame)
+    }
+
+    fn make(
+        scene: Arc<Scene>,
+        config: &WorldConfig,
+        list: Option<&CellList>,
+    ) -> Result<Self, WorldError> {
         check_face_count(&scene)?;
         // Of mesh operands; see `Method`.
         let triangles = match config.method {
@@ -118,8 +151,7 @@ impl World {
             _ => Some(&config.triangles),
         };
         let place = Place::new(&scene);
-        let solids = Solids::prepare(&scene, &place.frame, config, triangles)
-            .map_err(|(object, error)| WorldError::Mesh { object, error })?;
+        let solids = Solids::prepare(&scene, &place.frame, config, list, triangles)?;
         let sheets = Sheets::prepare(&scene, &place.frame, solids.face_count(), config)?;
         let opaque = scene
             .materials()

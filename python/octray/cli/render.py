@@ -36,6 +36,12 @@ if TYPE_CHECKING:
 @picture_options
 @accel_option
 @tree_options
+@click.option(
+    "--dump-cells",
+    metavar="FILE",
+    help="Write the octree's occupied cells with the primitives that they touch.",
+)
+@click.option("--load-cells", metavar="FILE", help="Build the octree from such a list.")
 @threads_option
 @click.option(
     "--integrator",
@@ -127,9 +133,7 @@ class _Run:
         output = self.output = Output(options["output"], self.path)
         scene = self._load()
         with self._phase("build"):
-            scene.prepare(
-                accel=options["accel"], threads=options["threads"], **tree_values(options)
-            )
+            self._prepare(scene)
         image = self._trace(scene, output)
         self.report.add_rendering(image.report)
         if not image.complete:
@@ -145,6 +149,16 @@ class _Run:
         if options["verbose"]:
             self._say(self.report.details())
         return Exit.OK
+
+    def _prepare(self, scene: Scene) -> None:
+        options = self.options
+        how: dict[str, Any] = {"accel": options["accel"], "threads": options["threads"]}
+        try:
+            scene.prepare(cells=options["load_cells"], **how, **tree_values(options))
+            if options["dump_cells"]:
+                scene.dump_cells(options["dump_cells"], **how)
+        except ValueError as error:
+            raise click.UsageError(str(error)) from error
 
     def _load(self) -> Scene:
         with self._phase("import"):

@@ -149,6 +149,13 @@ impl Writer {
         false
     }
 
+    /// What was written from a position on.
+    pub(super) fn since(&self, position: usize) -> Code {
+        Code {
+            words: self.words[position..].to_vec(),
+        }
+    }
+
     pub(super) fn position(&self) -> usize {
         self.words.len()
     }

@@ -268,14 +268,21 @@ impl Lowering {
             sides,
             faces: vec![[None; 2]; composite.faces().len()],
         };
-        let first = self.face_count();
+        let (first, start) = (self.face_count(), writer.position());
         let constant = self.formula(composite.formula(), &mut named, context, writer);
-        self.note_operand(&primitive, first, context);
+        let expression = || constant.map_or_else(|| Ok(writer.since(start)), Err);
+        self.note_operand(&primitive, first, context, expression);
         constant
     }
 
     /// Lists an operand whose faces are those from `first` on.
-    fn note_operand(&mut self, primitive: &Primitive, first: usize, context: &Context) {
+    fn note_operand(
+        &mut self,
+        primitive: &Primitive,
+        first: usize,
+        context: &Context,
+        expression: impl FnOnce() -> Lowered,
+    ) {
         let faces = first as u32..self.face_count() as u32;
         if let Some(operands) = &mut self.operands {
             operands.push(Operand {
@@ -283,6 +290,7 @@ impl Lowering {
                 scene_from_local: context.scene_from_here,
                 faces,
                 complemented: context.complemented,
+                expression: expression(),
             });
         }
     }
@@ -341,6 +349,7 @@ impl Lowering {
             Operation::And
         };
         let first = self.face_count();
+        let position = writer.position();
         let mut open = writer.open(operation);
         for (surface, inside_is_positive) in sides {
             let face = FaceId(self.faces.len() as u32);
@@ -354,7 +363,7 @@ impl Lowering {
             writer.operand(&mut open, start, None);
         }
         writer.close(&open);
-        self.note_operand(primitive, first, context);
+        self.note_operand(primitive, first, context, || Ok(writer.since(position)));
     }
 }
 

@@ -4,6 +4,7 @@ use std::ops::Range;
 
 use octray_math::DAffine3;
 
+use super::lower::Lowered;
 use crate::Primitive;
 
 /// One occurrence of a primitive in the solids of a scene.
@@ -20,4 +21,6 @@ pub struct Operand {
     pub faces: Range<u32>,
     /// Whether the expression wants its outside.
     pub complemented: bool,
+    /// What the expression wants, by itself.
+    pub expression: Lowered,
 }

@@ -4,7 +4,12 @@
 //! "Object" means one primitive, an operand of the solids, or one triangle. All of them may say
 //! *touched* too often and never too seldom, so rays find the same surfaces whatever decides.
 
+mod enclosure;
+mod marks;
 pub mod shells;
+
+pub use enclosure::Enclosure;
+pub use marks::{Marker, Marks, witnesses};
 
 /// How an octree's builder decides which objects a cell touches.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

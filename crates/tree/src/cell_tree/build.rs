@@ -23,6 +23,20 @@ pub trait Subdivide: Sync {
     /// The memory that the contents will take in the finished tree.
     fn bytes(&self, content: &Self::Content) -> u64;
 
+    /// The memory of the contents while the cell may still be divided.
+    fn building_bytes(&self, content: &Self::Content) -> u64 {
+        self.bytes(content)
+    }
+
+    /// Drops what only division needs, once a cell is a leaf.
+    fn settle(&self, _content: &mut Self::Content) {}
+
+    /// Whether to divide the cell, where it is not for the criteria to say. Limits of depth and
+    /// memory still hold.
+    fn prescribed(&self, _content: &Self::Content) -> Option<bool> {
+        None
+    }
+
     /// The share of the cell's volume that its objects occupy, for [`Criteria::max_share`]; see
     /// [`super::filled_share`]. Things without a volume occupy none.
     fn share(&self, _content: &Self::Content, _cell: &Aabb) -> f64 {
@@ -67,7 +81,10 @@ impl<S: Subdivide> Sizes<'_, S> {
 
     /// While the tree is built.
     fn held(&self, cells: &[Frontier<S::Content>]) -> u64 {
-        self.kept(cells) + cells.len() as u64 * Self::BESIDE
+        let contents: u64 = (cells.iter())
+            .map(|c| self.0.building_bytes(&c.content))
+            .sum();
+        contents + cells.len() as u64 * Self::BESIDE
     }
 }
 
@@ -133,7 +150,7 @@ impl CellTree {
             divided.resize_with(level.len(), || None);
             let mut next = Vec::new();
             let level_blocks = tree.blocks.len();
-            for (index, (cell, division)) in level.into_iter().zip(divided).enumerate() {
+            for (index, (mut cell, division)) in level.into_iter().zip(divided).enumerate() {
                 let depth = cell.key.depth;
                 tree.stats.depth = tree.stats.depth.max(depth);
                 let node = match (subdivide.describe(&cell.content), division) {
@@ -152,6 +169,7 @@ impl CellTree {
                     (Cell::Occupied { parts, .. }, _) => {
                         tree.stats.count_leaf(depth, Some(parts));
                         tree.stats.stopped_by_depth += u64::from(depth == max_depth);
+                        subdivide.settle(&mut cell.content);
                         let bytes = subdivide.bytes(&cell.content);
                         tree.stats.bytes += bytes;
                         leaf_bytes += bytes + Sizes::<S>::BESIDE;
@@ -223,7 +241,7 @@ fn divide_level<S: Subdivide>(
         let mut bytes = 0;
         let fits = rest.iter().take(BATCH_CELLS).take_while(|cell| {
             let before = bytes;
-            bytes += subdivide.bytes(&cell.content);
+            bytes += subdivide.building_bytes(&cell.content);
             before < BATCH_BYTES
         });
         let (batch, later) = rest.split_at(fits.count());
@@ -306,7 +324,10 @@ fn divide<S: Subdivide>(
         let share = subdivide.share(&cell.content, &cell.key.bounds(root));
         share > criteria.max_share
     };
-    if parts <= criteria.max_parts || (criteria.max_share < 1.0 && is_full()) {
+    let prescribed = subdivide.prescribed(&cell.content);
+    let divides = prescribed
+        .unwrap_or_else(|| parts > criteria.max_parts && !(criteria.max_share < 1.0 && is_full()));
+    if !divides {
         return None;
     }
     let margin = root.size().x * CellTree::CONTENT_MARGIN;
@@ -334,7 +355,7 @@ fn divide<S: Subdivide>(
             };
     }
     let mut saved = criteria.visit_cost + cost - expected;
-    if !criteria.by_cost {
+    if !criteria.by_cost || prescribed.is_some() {
         saved = f64::from(parts);
     } else if saved <= 0.0 {
         if parts <= FUTILE_PARTS || cell.futile >= FUTILE_LIMIT {

@@ -6,7 +6,7 @@ use octray_geometry::FaceId;
 use octray_geometry::csg::{self, Constant, Face, truth_on};
 use octray_geometry::mesh::MeshSolid;
 use octray_geometry::surface::{Side, Surface};
-use octray_math::Aabb;
+use octray_math::{Aabb, DVec3};
 use octray_tree::{Cell, Subdivide};
 
 use super::operand_boxes::OperandBoxes;
@@ -42,6 +42,11 @@ impl Content {
     /// Empty where all of the boundary counts.
     pub(super) fn clip(&self, object: &Active) -> &[u32] {
         &self.words[object.clip.clone()]
+    }
+
+    /// The expressions and clips of all objects.
+    pub(super) fn expressions(&self) -> impl Iterator<Item = &[u32]> {
+        (self.objects.iter()).flat_map(|object| [self.expression(object), self.clip(object)])
     }
 
     /// Adds an object as far as `truth` leaves it undecided. `expression` and `clip` are words, no
@@ -109,10 +114,19 @@ pub(super) struct Cells<'a> {
 }
 
 impl Cells<'_> {
-    fn classify(&self, surface: u32, cell: &Aabb) -> Side {
+    pub(super) fn classify(&self, surface: u32, cell: &Aabb) -> Side {
         match self.surfaces.get(surface as usize) {
             Some(surface) => surface.classify(cell),
             None => self.mesh(surface).classify(cell),
+        }
+    }
+
+    /// The side on which a point lies; of a mesh, one that is not on its boundary.
+    pub(super) fn side_of(&self, surface: u32, point: DVec3) -> Side {
+        match self.surfaces.get(surface as usize) {
+            Some(surface) => surface.classify(&Aabb::new(point, point)),
+            None if self.mesh(surface).contains(point) => Side::Negative,
+            None => Side::Positive,
         }
     }
 

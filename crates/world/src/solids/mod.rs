@@ -3,8 +3,10 @@
 mod cells;
 mod interact;
 mod leaf;
+mod listed_cells;
 mod numbering;
 mod operand_boxes;
+mod operand_cells;
 mod prepare;
 mod roots;
 mod spans;

@@ -3,18 +3,23 @@
 use std::cmp::Ordering;
 
 use octray_geometry::csg::{Constant, Face, Lowered, LoweredScene, Lowering, MeshOperand};
-use octray_geometry::mesh::{MeshError, MeshSolid};
+use octray_geometry::membership::Marker;
+use octray_geometry::mesh::MeshSolid;
 use octray_geometry::surface::{PLACE_TOLERANCE, SURFACE_TOLERANCE};
-use octray_geometry::{FaceId, MaterialId, SceneFrame, Sheet, Solid};
+use octray_geometry::{FaceId, MaterialId, Membership, SceneFrame, Sheet, Solid};
 use octray_math::Aabb;
 use octray_scene::{Object, ObjectId, Scene, Shape};
+use octray_tree::cell_tree::enclosing_cube;
 use octray_tree::{Division, Encoding, Partition, WideTreeConfig};
 
 use super::cells::{Cells, Content};
+use super::listed_cells::{ListedCells, fingerprint, list_of};
 use super::operand_boxes::OperandBoxes;
+use super::operand_cells::{OperandCells, operands_in, operands_of_faces};
 use super::volumes::Volumes;
 use super::{Leaves, MeshSurface, Ranked, Solids};
-use crate::{Method, WorldConfig};
+use crate::cell_list::ListedScene;
+use crate::{CellList, CellListError, Method, WorldConfig, WorldError};
 
 /// An object before its rank is known.
 struct Candidate<'a> {
@@ -26,6 +31,11 @@ struct Candidate<'a> {
     bounds: Aabb,
 }
 
+/// What merged surfaces and rounding move, many times over.
+fn slack(frame: &SceneFrame) -> f64 {
+    64.0 * (SURFACE_TOLERANCE * frame.size + PLACE_TOLERANCE * frame.largest())
+}
+
 impl<'a> Candidate<'a> {
     fn new(index: usize, object: &'a Object, frame: &SceneFrame) -> Option<Self> {
         let (boundary, clip) = match &object.shape {
@@ -35,8 +45,7 @@ impl<'a> Candidate<'a> {
         };
         // By the same transforms as the faces, so that rounding far from the origin moves both.
         let scene_from_world = frame.scene_from_world();
-        // What merged surfaces and rounding move, many times over.
-        let slack = 64.0 * (SURFACE_TOLERANCE * frame.size + PLACE_TOLERANCE * frame.largest());
+        let slack = slack(frame);
         let bounds = [Some(boundary), clip]
             .into_iter()
             .flatten()
@@ -71,50 +80,114 @@ impl<'a> Candidate<'a> {
     }
 }
 
-impl Solids {
-    /// The solids of the scene, for the method of the configuration. The triangles of
-    /// mesh operands get octrees of their own if there is a configuration.
-    ///
-    /// # Errors
-    /// A mesh operand cannot be used as a solid; the object's name comes with the reason.
-    pub(crate) fn prepare(
-        scene: &Scene,
-        frame: &SceneFrame,
-        config: &WorldConfig,
-        triangles: Option<&WideTreeConfig>,
-    ) -> Result<Self, (String, MeshError)> {
-        let objects = scene.objects().iter().enumerate();
-        let mut candidates: Vec<Candidate<'_>> = objects
-            .filter_map(|(index, object)| Candidate::new(index, object, frame))
-            .collect();
-        // Faces are numbered in the order of the objects, ranks are a matter of this module.
+/// The objects' expressions.
+struct Expressions {
+    /// For each object its boundary and its clip.
+    lowered: Vec<(ObjectId, Lowered, Option<Lowered>)>,
+    /// The object of each face.
+    owners: Vec<ObjectId>,
+    merged_surfaces: usize,
+    scene: LoweredScene,
+}
+
+impl Expressions {
+    /// Faces are numbered in the order of the objects.
+    fn new(candidates: &[Candidate<'_>], frame: &SceneFrame, with_operands: bool) -> Self {
         let mut lowering = Lowering::new(frame);
-        let by_share = config.criteria.max_share < 1.0;
-        if by_share {
+        if with_operands {
             lowering = lowering.with_operands();
         }
         let mut lowered = Vec::with_capacity(candidates.len());
         let mut owners = Vec::new();
-        for candidate in &candidates {
+        for candidate in candidates {
             let boundary = lowering.lower(candidate.boundary);
             let clip = candidate.clip.map(|clip| lowering.lower(clip));
             owners.resize(lowering.face_count(), candidate.id);
             lowered.push((candidate.id, boundary, clip));
         }
+        Self {
+            lowered,
+            owners,
+            merged_surfaces: lowering.merged_surfaces(),
+            scene: lowering.finish(),
+        }
+    }
+
+    /// Tells these objects from others.
+    fn fingerprint(&self) -> u64 {
+        let words = self.lowered.iter().flat_map(|(id, boundary, clip)| {
+            let codes = std::iter::once(boundary).chain(clip);
+            std::iter::once(id.0).chain(codes.flat_map(|code| {
+                match code {
+                    Ok(code) => code.words(),
+                    Err(Constant::True) => &[u32::MAX],
+                    Err(Constant::False) => &[],
+                }
+                .iter()
+                .copied()
+            }))
+        });
+        fingerprint(&self.scene.operands, words)
+    }
+}
+
+fn candidates<'a>(scene: &'a Scene, frame: &SceneFrame) -> Vec<Candidate<'a>> {
+    let objects = scene.objects().iter().enumerate();
+    objects
+        .filter_map(|(index, object)| Candidate::new(index, object, frame))
+        .collect()
+}
+
+impl Solids {
+    /// The solids of the scene, for the method of the configuration, in cells along a list if there
+    /// is one. The triangles of
+    /// mesh operands get octrees of their own if there is a configuration.
+    ///
+    /// # Errors
+    /// A mesh operand cannot be used as a solid; or the list cannot be used.
+    pub(crate) fn prepare(
+        scene: &Scene,
+        frame: &SceneFrame,
+        config: &WorldConfig,
+        list: Option<&CellList>,
+        triangles: Option<&WideTreeConfig>,
+    ) -> Result<Self, WorldError> {
+        let mut candidates = candidates(scene, frame);
+        // Ranks are a matter of this module.
+        let by_share = config.criteria.max_share < 1.0;
+        let division = config.method.division();
+        // A list says itself what cells touch; what it does not name is asked of boxes first.
+        let membership = match list {
+            Some(_) => Membership::BoundingBox,
+            None => config.method.membership(),
+        };
+        let by_operands = division.is_some() && membership != Membership::Analytic;
+        let expressions = Expressions::new(
+            &candidates,
+            frame,
+            by_share || by_operands || list.is_some(),
+        );
+        if let Some(list) = list {
+            check_list(list, division, &expressions)?;
+        }
+        let Expressions {
+            lowered,
+            owners,
+            merged_surfaces,
+            scene:
+                LoweredScene {
+                    faces,
+                    surfaces,
+                    meshes: mesh_operands,
+                    operands,
+                },
+        } = expressions;
         candidates.sort_by(Candidate::rank);
         let ranked: Vec<Ranked> = candidates.iter().map(Ranked::new).collect();
         let mut rank_of = vec![u32::MAX; scene.objects().len()];
         for (rank, object) in ranked.iter().enumerate() {
             rank_of[object.object.0 as usize] = rank as u32;
         }
-        let merged_surfaces = lowering.merged_surfaces();
-        let LoweredScene {
-            faces,
-            surfaces,
-            meshes: mesh_operands,
-            operands,
-            ..
-        } = lowering.finish();
         let face_owner: Vec<u32> = owners.iter().map(|id| rank_of[id.0 as usize]).collect();
         let meshes = mesh_surfaces(
             &mesh_operands,
@@ -151,7 +224,6 @@ impl Solids {
             .filter(Aabb::is_bounded)
             .fold(Aabb::EMPTY, Aabb::union);
         let object_bounds: Vec<Aabb> = candidates.iter().map(|c| c.bounds).collect();
-        let division = config.method.division();
         let volumes = match config.method {
             Method::Spheres => Some(Volumes::new(&object_bounds, true)),
             Method::Boxes => Some(Volumes::new(&object_bounds, false)),
@@ -175,14 +247,36 @@ impl Solids {
             if matches!(division, Division::Octree(Encoding::Lvsi(_), _)) {
                 whole = Some(outer.clone());
             }
-            let (built, leaves) = Partition::build(
-                &bounds,
-                outer,
-                &restricting,
-                division,
-                &config.criteria,
-                config.table,
-            );
+            let (built, leaves) = if by_operands {
+                let marker = Marker::new(&operands, membership, slack(frame));
+                let operand_of = operands_of_faces(&operands);
+                let marking = OperandCells::new(&restricting, &operands, &marker, &operand_of);
+                match list {
+                    Some(list) => along_list(list, &bounds, outer, &marking, division, config)?,
+                    None => {
+                        let root = marking.root(outer);
+                        let criteria = &config.criteria;
+                        let (built, leaves) = Partition::build(
+                            &bounds,
+                            root,
+                            &marking,
+                            division,
+                            criteria,
+                            config.table,
+                        );
+                        (built, leaves.into_iter().map(|leaf| leaf.content).collect())
+                    }
+                }
+            } else {
+                Partition::build(
+                    &bounds,
+                    outer,
+                    &restricting,
+                    division,
+                    &config.criteria,
+                    config.table,
+                )
+            };
             contents = leaves;
             cells = Some(built);
             outer = unbounded;
@@ -216,6 +310,31 @@ impl Solids {
             has_unbounded,
             merged_surfaces,
         })
+    }
+
+    /// The occupied cells with the operands that they touch; `None` where there is no octree.
+    pub(crate) fn cell_list(&self, scene: &Scene, frame: &SceneFrame) -> Option<CellList> {
+        let partition = self.cells.as_ref()?;
+        if partition.stats().resolution.is_some() {
+            return None;
+        }
+        let expressions = Expressions::new(&candidates(scene, frame), frame, true);
+        let operand_of = operands_of_faces(&expressions.scene.operands);
+        let mut leaves = Vec::new();
+        partition.visit_leaves(|leaf| leaves.push(leaf));
+        let listed = ListedScene {
+            root: *partition.bounds(),
+            operands: expressions.scene.operands.len() as u32,
+            fingerprint: expressions.fingerprint(),
+        };
+        Some(list_of(listed, leaves, |leaf| {
+            let view = self.leaves.get(leaf);
+            let words = view
+                .objects
+                .iter()
+                .flat_map(|object| [view.expression(object), view.clip(object).unwrap_or(&[])]);
+            operands_in(words, &operand_of)
+        }))
     }
 
     /// How many face ids the solids use; triangles of sheets are numbered from here.
@@ -282,6 +401,51 @@ fn add(content: &mut Content, rank: u32, shell: bool, boundary: &Lowered, clip: 
     content.add(rank, shell, expression, clip, &mut |_| None);
 }
 
+/// Whether the list is of these solids and the method has an octree for it.
+fn check_list(
+    list: &CellList,
+    division: Option<Division>,
+    expressions: &Expressions,
+) -> Result<(), CellListError> {
+    let Some(Division::Octree(encoding, _)) = division else {
+        return Err(CellListError::Method("the method has no octree"));
+    };
+    if list.depth() > encoding.max_depth() {
+        let reason = "it has cells below level 10, the deepest for a hash table of occupied cells";
+        return Err(CellListError::Method(reason));
+    }
+    let scene = &list.scene;
+    let operands = expressions.scene.operands.len();
+    if scene.operands as usize != operands || scene.fingerprint != expressions.fingerprint() {
+        return Err(CellListError::OtherScene);
+    }
+    Ok(())
+}
+
+/// The cells of a list, with their contents.
+fn along_list(
+    list: &CellList,
+    bounds: &Aabb,
+    content: Content,
+    marking: &OperandCells<'_>,
+    division: Division,
+    config: &WorldConfig,
+) -> Result<(Partition, Vec<Content>), CellListError> {
+    if enclosing_cube(bounds) != list.scene.root {
+        return Err(CellListError::OtherScene);
+    }
+    let listed = ListedCells::new(marking, list);
+    let root = listed.root(&marking.root(content));
+    let criteria = ListedCells::criteria(&config.criteria);
+    let (built, leaves) =
+        Partition::build(bounds, root, &listed, division, &criteria, config.table);
+    if built.stats().cells.stopped_by_memory {
+        return Err(CellListError::Memory);
+    }
+    let contents = leaves.into_iter().map(|leaf| leaf.marked.content);
+    Ok((built, contents.collect()))
+}
+
 fn mesh_surfaces(
     operands: &[MeshOperand],
     faces: &[Face],
@@ -290,7 +454,7 @@ fn mesh_surfaces(
     scene: &Scene,
     first_mesh_surface: usize,
     config: Option<&WideTreeConfig>,
-) -> Result<Vec<MeshSurface>, (String, MeshError)> {
+) -> Result<Vec<MeshSurface>, WorldError> {
     let mut literals = vec![0; operands.len()];
     for (literal, face) in faces.iter().enumerate() {
         if let Some(mesh) = (face.surface.0 as usize).checked_sub(first_mesh_surface) {
@@ -303,7 +467,8 @@ fn mesh_surfaces(
         let solid = MeshSolid::new(&operand.mesh, &operand.scene_from_mesh, config);
         let solid = solid.map_err(|error| {
             let object = ranked[face_owner[literal as usize] as usize].object;
-            (scene.objects()[object.0 as usize].name.clone(), error)
+            let object = scene.objects()[object.0 as usize].name.clone();
+            WorldError::Mesh { object, error }
         })?;
         let solid = solid.with_planes(operand.planes.clone());
         let triangles = solid.triangle_count();
