@@ -25,7 +25,8 @@
 //! process, where the system tells.
 
 use octray::world::{
-    LvsiStats, MemoryStats, PartitionStats, Tally, TriangleMarks, WideTreeStats, WorldStats,
+    LvsiStats, MarkerStats, MarkingStats, MemoryStats, PartitionStats, Tally, TriangleMarks,
+    WideTreeStats, WorldStats,
 };
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -143,6 +144,31 @@ fn triangle_cube<'py>(py: Python<'py>, marks: &TriangleMarks) -> PyResult<Bound<
     Ok(dict)
 }
 
+fn membership<'py>(py: Python<'py>, marking: &MarkingStats) -> PyResult<Bound<'py, PyDict>> {
+    let MarkerStats {
+        operands,
+        pieces,
+        piece_bytes,
+        chord_error,
+        steps: decided,
+    } = marking.marker;
+    let steps = PyDict::new(py);
+    steps.set_item("vertex", decided.vertex)?;
+    steps.set_item("face", decided.face)?;
+    steps.set_item("edge", decided.edge)?;
+    steps.set_item("diagonal", decided.diagonal)?;
+    steps.set_item("between", decided.between)?;
+    let dict = PyDict::new(py);
+    dict.set_item("operands", operands)?;
+    dict.set_item("pieces", pieces)?;
+    dict.set_item("peak_bytes", piece_bytes)?;
+    dict.set_item("bytes", marking.pieces_left)?;
+    dict.set_item("chord_error", chord_error)?;
+    dict.set_item("steps", steps)?;
+    dict.set_item("marks", marking.marks)?;
+    Ok(dict)
+}
+
 /// Adds `trees`, `memory` and `world` to a report.
 pub(crate) fn add(py: Python<'_>, report: &Bound<'_, PyDict>, prepared: &Prepared) -> PyResult<()> {
     let stats = prepared.world.stats();
@@ -151,18 +177,15 @@ pub(crate) fn add(py: Python<'_>, report: &Bound<'_, PyDict>, prepared: &Prepare
     let over_solids = over_solids.map(|s| cells(py, s, &stats.objects_per_leaf));
     trees.set_item("cells", over_solids.transpose()?)?;
     let over_triangles = stats.triangle_cells.as_ref();
-    let over_triangles = over_triangles.map(|s| cells(py, s, &s.cells.parts));
+    let over_triangles = over_triangles.map(|s| cells(py, s, &stats.objects_per_triangle_leaf));
     trees.set_item("triangles", over_triangles.transpose()?)?;
     let over_triangles = stats.triangle_tree.as_ref();
     trees.set_item("wide", over_triangles.map(|s| wide(py, s)).transpose()?)?;
-    let triangle_cells = stats.triangle_cells.as_ref().zip(stats.triangle_marks);
-    let triangle_cells = triangle_cells.map(|(cells, marks)| {
-        let dict = self::cells(py, cells, &stats.objects_per_triangle_leaf)?;
-        dict.set_item("questions", marks.questions)?;
-        dict.set_item("decided_by_step", marks.steps)?;
-        PyResult::Ok(dict)
-    });
-    trees.set_item("triangle_cells", triangle_cells.transpose()?)?;
+    let marking = stats.marking.as_ref();
+    trees.set_item(
+        "membership",
+        marking.map(|m| membership(py, m)).transpose()?,
+    )?;
     report.set_item("trees", trees)?;
     let marks = stats.triangle_marks.as_ref();
     let marks = marks.map(|m| triangle_cube(py, m)).transpose()?;

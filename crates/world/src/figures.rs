@@ -1,5 +1,6 @@
 //! Figures about what was built: memory by part, and the cells themselves.
 
+use octray_geometry::membership::MarkerStats;
 use octray_math::{Aabb, CellKey};
 use octray_tree::{Node, Partition, Tally};
 
@@ -42,6 +43,17 @@ impl MemoryStats {
             + self.triangle_cells
             + self.wide_trees
     }
+}
+
+/// How cells were found to touch operands, where a membership test asks about operands.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct MarkingStats {
+    /// The operands, the temporary pieces of their boundaries, and what decided.
+    pub marker: MarkerStats,
+    /// Pairs of an occupied cell and an operand with a face in its expressions.
+    pub marks: u64,
+    /// Bytes of temporary pieces that were still there after the build: always 0.
+    pub pieces_left: u64,
 }
 
 /// What cells were made over.

@@ -16,7 +16,8 @@ use crate::line::{Line, Place};
 use crate::sheets::{SheetHit, Sheets};
 use crate::solids::{Interface, Scratch, Solids};
 use crate::{
-    CellList, CellListError, CellsOf, Counters, Hit, MemoryStats, Method, RayQuery, Region,
+    CellList, CellListError, CellsOf, Counters, Hit, MarkingStats, MemoryStats, Method, RayQuery,
+    Region,
 };
 
 /// How to prepare a world.
@@ -83,6 +84,8 @@ pub struct WorldStats {
     pub cells: Option<PartitionStats>,
     /// How many objects the occupied cells over solids hold.
     pub objects_per_leaf: Tally,
+    /// How cells were found to touch operands, where that was asked.
+    pub marking: Option<MarkingStats>,
     /// Memory by part.
     pub memory: MemoryStats,
     /// The octree with wide nodes over the triangles of sheets.
@@ -199,6 +202,7 @@ impl World {
             triangles: self.sheets.triangle_count(),
             cells: self.solids.partition().map(|cells| cells.stats().clone()),
             objects_per_leaf: self.objects_per_leaf(CellsOf::Solids),
+            marking: self.solids.marking().copied(),
             memory: self.memory(),
             triangle_tree: self.sheets.triangles().tree_stats().copied(),
             triangle_cells: triangles.partition().map(|cells| cells.stats().clone()),

@@ -157,29 +157,88 @@ fn every_membership_test_gives_the_same_hits_on_every_kind_of_primitive() {
     }
 }
 
+/// The same cells for all: everything is divided to one depth.
+fn divided(scene: &Arc<Scene>, membership: &str) -> World {
+    let mut config = config(&format!("octree:tree:ordered:{membership}"));
+    config.criteria.max_depth = 4;
+    config.criteria.by_cost = false;
+    World::prepare(Arc::clone(scene), &config).expect("valid")
+}
+
 #[test]
-fn no_test_marks_more_than_boxes_and_none_fewer_than_the_surfaces_do() {
+fn closer_looks_mark_fewer_cells() {
     let scene = scene();
-    let marks = |membership: &str| {
-        let mut config = config(&format!("octree:tree:ordered:{membership}"));
-        // The same cells for all: everything is divided to one depth.
-        config.criteria.max_depth = 4;
-        config.criteria.by_cost = false;
-        let world = World::prepare(Arc::clone(&scene), &config).expect("valid");
-        world.cell_list().expect("an octree").marks()
+    let marks = |name: &str| {
+        divided(&scene, name)
+            .cell_list()
+            .expect("an octree")
+            .marks()
     };
-    let analytic = marks("analytic");
-    assert!(analytic > 100);
-    for membership in [
-        "bounding-box",
-        "bounding-sphere",
-        "bounding-cover",
-        "shells",
-    ] {
-        let marked = marks(membership);
-        assert!(marked >= analytic, "{membership}: {marked} < {analytic}");
+    let (sphere, cuboid) = (marks("bounding-sphere"), marks("bounding-box"));
+    let (cover, shells, analytic) = (marks("bounding-cover"), marks("shells"), marks("analytic"));
+    assert!(
+        shells < cover && cover < cuboid && cuboid < sphere,
+        "{shells} {cover} {cuboid} {sphere}"
+    );
+    // Triangles of polygons are exact, faces of surfaces are asked one by one: neither is always closer.
+    assert!(
+        10 * shells < 11 * analytic && 10 * analytic < 11 * shells,
+        "{shells} {analytic}"
+    );
+}
+
+#[test]
+fn the_triangles_are_gone_after_the_build() {
+    let scene = scene();
+    for (name, is_shells) in [("shells", true), ("bounding-cover", false)] {
+        let world = divided(&scene, name);
+        let marking = world.stats().marking.expect("operands were marked");
+        assert!(marking.marker.operands >= 10, "{marking:?}");
+        assert!(
+            marking.marker.pieces > 20 * marking.marker.operands,
+            "{marking:?}"
+        );
+        assert!(
+            marking.marker.piece_bytes > 48 * marking.marker.pieces,
+            "{marking:?}"
+        );
+        assert_eq!(marking.pieces_left, 0);
+        assert_eq!(
+            marking.marks,
+            world.cell_list().expect("an octree").marks() as u64
+        );
+        assert_eq!(marking.marker.chord_error > 0.0, is_shells);
+        let steps = marking.marker.steps;
+        for count in [
+            steps.vertex,
+            steps.face,
+            steps.edge,
+            steps.diagonal,
+            steps.between,
+        ] {
+            assert_eq!(count > 0, is_shells, "{steps:?}");
+        }
     }
-    assert_ne!(marks("bounding-sphere"), marks("bounding-box"));
+    let flat = divided(&scene, "bounding-box")
+        .stats()
+        .marking
+        .expect("marked");
+    assert_eq!((flat.marker.pieces, flat.marker.piece_bytes), (0, 0));
+    assert_eq!(divided(&scene, "analytic").stats().marking, None);
+}
+
+#[test]
+fn pieces_become_larger_where_memory_is_short() {
+    let scene = scene();
+    let mut config = config("octree:tree:ordered:shells");
+    let fine = World::prepare(Arc::clone(&scene), &config).expect("valid");
+    config.criteria.memory_limit = 1 << 20;
+    let coarse = World::prepare(Arc::clone(&scene), &config).expect("valid");
+    let [fine, coarse] = [fine, coarse].map(|w| w.stats().marking.expect("marked").marker);
+    assert!(
+        coarse.pieces < fine.pieces && coarse.chord_error > fine.chord_error,
+        "{fine:?} {coarse:?}"
+    );
 }
 
 #[test]

@@ -6,10 +6,12 @@
 
 mod enclosure;
 mod marks;
+mod pieces;
 pub mod shells;
 
 pub use enclosure::Enclosure;
-pub use marks::{Marker, Marks, witnesses};
+pub use marks::{Marker, MarkerStats, Marks, witnesses};
+pub use pieces::{Fineness, LiveBytes};
 
 /// How an octree's builder decides which objects a cell touches.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

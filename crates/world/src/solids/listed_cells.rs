@@ -70,7 +70,7 @@ impl<'a> ListedCells<'a> {
             self.marking
                 .touched_besides(&parent.marks, operands, bounds)
         } else {
-            Marks { operands }
+            Marks::of(operands)
         };
         Listed {
             key,

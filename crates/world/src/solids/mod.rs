@@ -29,7 +29,7 @@ pub(crate) use sweep::{Change, Interface, Passage};
 
 use crate::figures::Held;
 use crate::line::Line;
-use crate::{Counters, MemoryStats, Region};
+use crate::{Counters, MarkingStats, MemoryStats, Region};
 
 /// An object made of faces. Their order is the rank by which regions are decided: higher priority
 /// first, then the smaller object, then the later one.
@@ -76,6 +76,8 @@ pub(crate) struct Solids {
     /// Whether any object has no end.
     has_unbounded: bool,
     merged_surfaces: usize,
+    /// Where operands were marked.
+    marking: Option<MarkingStats>,
 }
 
 /// A leaf on a line.
@@ -331,6 +333,10 @@ impl Solids {
 
     pub(crate) fn surface_count(&self) -> usize {
         self.surfaces.len() + self.meshes.len()
+    }
+
+    pub(crate) const fn marking(&self) -> Option<&MarkingStats> {
+        self.marking.as_ref()
     }
 
     pub(crate) const fn merged_surfaces(&self) -> usize {

@@ -1,9 +1,11 @@
 //! From the scene's objects to faces, ranks and cells.
 
 use std::cmp::Ordering;
+use std::sync::Arc;
+use std::sync::atomic::{self, AtomicU64};
 
 use octray_geometry::csg::{Constant, Face, Lowered, LoweredScene, Lowering, MeshOperand};
-use octray_geometry::membership::Marker;
+use octray_geometry::membership::{Fineness, Marker};
 use octray_geometry::mesh::MeshSolid;
 use octray_geometry::surface::{PLACE_TOLERANCE, SURFACE_TOLERANCE};
 use octray_geometry::{FaceId, MaterialId, Membership, SceneFrame, Sheet, Solid};
@@ -19,7 +21,7 @@ use super::operand_cells::{OperandCells, operands_in, operands_of_faces};
 use super::volumes::Volumes;
 use super::{Leaves, MeshSurface, Ranked, Solids};
 use crate::cell_list::ListedScene;
-use crate::{CellList, CellListError, Method, WorldConfig, WorldError};
+use crate::{CellList, CellListError, MarkingStats, Method, WorldConfig, WorldError};
 
 /// An object before its rank is known.
 struct Candidate<'a> {
@@ -231,6 +233,7 @@ impl Solids {
         };
         let mut contents = Vec::new();
         let mut cells = None;
+        let mut marking_stats = None;
         let mut outer = root;
         let mut whole = None;
         let operand_boxes =
@@ -248,10 +251,15 @@ impl Solids {
                 whole = Some(outer.clone());
             }
             let (built, leaves) = if by_operands {
-                let marker = Marker::new(&operands, membership, slack(frame));
+                let gauge = Arc::new(AtomicU64::new(0));
+                let fineness = Fineness {
+                    within: enclosing_cube(&bounds),
+                    memory_limit: config.criteria.memory_limit / 4,
+                };
+                let marker = Marker::new(&operands, membership, slack(frame), &fineness, &gauge);
                 let operand_of = operands_of_faces(&operands);
                 let marking = OperandCells::new(&restricting, &operands, &marker, &operand_of);
-                match list {
+                let made: (Partition, Vec<Content>) = match list {
                     Some(list) => along_list(list, &bounds, outer, &marking, division, config)?,
                     None => {
                         let root = marking.root(outer);
@@ -266,7 +274,19 @@ impl Solids {
                         );
                         (built, leaves.into_iter().map(|leaf| leaf.content).collect())
                     }
-                }
+                };
+                let touched = |content: &Content| {
+                    operands_in(content.expressions(), &operand_of).len() as u64
+                };
+                let marks = made.1.iter().map(touched).sum();
+                let stats = marker.stats();
+                drop(marker);
+                marking_stats = Some(MarkingStats {
+                    marker: stats,
+                    marks,
+                    pieces_left: gauge.load(atomic::Ordering::Relaxed),
+                });
+                made
             } else {
                 Partition::build(
                     &bounds,
@@ -309,6 +329,7 @@ impl Solids {
             everywhere,
             has_unbounded,
             merged_surfaces,
+            marking: marking_stats,
         })
     }
 
