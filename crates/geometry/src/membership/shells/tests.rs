@@ -88,7 +88,7 @@ fn placed(solid: &Solid) -> (Primitive, DAffine3) {
                 child,
                 parent_from_child,
             } => {
-                map = map * *parent_from_child;
+                map *= *parent_from_child;
                 at = child;
             }
             other => panic!("not a primitive: {other:?}"),
