@@ -298,6 +298,7 @@ impl Scene {
     /// Writes the occupied cells of the octree over solids, each with the primitives that it may
     /// touch, as text that `prepare` takes as `cells`.
     #[pyo3(signature = (path, *, accel = "octree", threads = None))]
+    #[expect(clippy::needless_pass_by_value, reason = "how PyO3 takes paths")]
     fn dump_cells(
         slf: &Bound<'_, Self>,
         path: PathBuf,
