@@ -33,7 +33,7 @@ fn conform(solids: &[(Solid, i32)], rays: &[Ray]) -> Answers {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(25))]
+    #![proptest_config(ProptestConfig::with_cases(12))]
 
     #[test]
     fn every_method_answers_as_brute_force_does(
@@ -66,7 +66,7 @@ fn neighbours(from: DVec3, to: DVec3, spread: f64) -> Vec<Ray> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(10))]
+    #![proptest_config(ProptestConfig::with_cases(5))]
 
     #[test]
     fn neighbouring_rays_are_answered_as_by_brute_force(

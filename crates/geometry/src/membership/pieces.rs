@@ -36,7 +36,7 @@ const COVER_SHARE: f64 = 1.0 / 16.0;
 /// Nothing is followed below this share of what is divided.
 const LEAST_SHARE: f64 = 1.0 / 16384.0;
 /// An operand has no more pieces than this, so that one of many parts cannot take all memory.
-const MOST: usize = 1 << 16;
+const MOST: usize = 1 << 14;
 
 /// What holds the pieces' bytes for as long as there are pieces.
 #[derive(Debug)]

@@ -1,6 +1,8 @@
 //! The solids of a world: faces, surfaces, the octree over them, and sweeps along lines.
 
+mod candidates;
 mod cells;
+mod divide;
 mod interact;
 mod leaf;
 mod listed_cells;

@@ -1,0 +1,143 @@
+//! The objects of a scene that are made of faces, and their expressions.
+
+use std::cmp::Ordering;
+
+use octray_geometry::csg::{Constant, Lowered, LoweredScene, Lowering};
+use octray_geometry::surface::{PLACE_TOLERANCE, SURFACE_TOLERANCE};
+use octray_geometry::{SceneFrame, Sheet, Solid};
+use octray_math::Aabb;
+use octray_scene::{Object, ObjectId, Scene, Shape};
+
+use super::Ranked;
+use super::listed_cells::fingerprint;
+
+/// An object before its rank is known.
+pub(super) struct Candidate<'a> {
+    pub(super) id: ObjectId,
+    pub(super) object: &'a Object,
+    pub(super) boundary: &'a Solid,
+    pub(super) clip: Option<&'a Solid>,
+    /// In the coordinates of the scene.
+    pub(super) bounds: Aabb,
+}
+
+/// What merged surfaces and rounding move, many times over.
+pub(super) fn slack(frame: &SceneFrame) -> f64 {
+    64.0 * (SURFACE_TOLERANCE * frame.size + PLACE_TOLERANCE * frame.largest())
+}
+
+impl<'a> Candidate<'a> {
+    pub(super) fn new(index: usize, object: &'a Object, frame: &SceneFrame) -> Option<Self> {
+        let (boundary, clip) = match &object.shape {
+            Shape::Solid(solid) => (solid, None),
+            Shape::Sheet(Sheet::Shell { solid, clip }) => (solid, Some(clip)),
+            Shape::Sheet(Sheet::Mesh { .. }) => return None,
+        };
+        // By the same transforms as the faces, so that rounding far from the origin moves both.
+        let scene_from_world = frame.scene_from_world();
+        let slack = slack(frame);
+        let bounds = [Some(boundary), clip]
+            .into_iter()
+            .flatten()
+            .map(|solid| solid.enclosure_in(&scene_from_world, slack))
+            .fold(Aabb::ALL, Aabb::intersection);
+        let bounds = if bounds.is_empty() {
+            Aabb::EMPTY
+        } else {
+            bounds
+        };
+        Some(Self {
+            id: ObjectId(index as u32),
+            object,
+            boundary,
+            clip,
+            bounds,
+        })
+    }
+
+    /// Higher priority, then smaller, then later: what is inside something else is seen there.
+    pub(super) fn rank(&self, other: &Self) -> Ordering {
+        let size = |c: &Self| {
+            if c.bounds.is_bounded() {
+                c.bounds.diagonal()
+            } else {
+                f64::INFINITY
+            }
+        };
+        (other.object.priority.cmp(&self.object.priority))
+            .then(size(self).total_cmp(&size(other)))
+            .then(other.id.cmp(&self.id))
+    }
+}
+
+/// The objects' expressions.
+pub(super) struct Expressions {
+    /// For each object its boundary and its clip.
+    pub(super) lowered: Vec<(ObjectId, Lowered, Option<Lowered>)>,
+    /// The object of each face.
+    pub(super) owners: Vec<ObjectId>,
+    pub(super) merged_surfaces: usize,
+    pub(super) scene: LoweredScene,
+}
+
+impl Expressions {
+    /// Faces are numbered in the order of the objects.
+    pub(super) fn new(
+        candidates: &[Candidate<'_>],
+        frame: &SceneFrame,
+        with_operands: bool,
+    ) -> Self {
+        let mut lowering = Lowering::new(frame);
+        if with_operands {
+            lowering = lowering.with_operands();
+        }
+        let mut lowered = Vec::with_capacity(candidates.len());
+        let mut owners = Vec::new();
+        for candidate in candidates {
+            let boundary = lowering.lower(candidate.boundary);
+            let clip = candidate.clip.map(|clip| lowering.lower(clip));
+            owners.resize(lowering.face_count(), candidate.id);
+            lowered.push((candidate.id, boundary, clip));
+        }
+        Self {
+            lowered,
+            owners,
+            merged_surfaces: lowering.merged_surfaces(),
+            scene: lowering.finish(),
+        }
+    }
+
+    /// Tells these objects from others.
+    pub(super) fn fingerprint(&self) -> u64 {
+        let words = self.lowered.iter().flat_map(|(id, boundary, clip)| {
+            let codes = std::iter::once(boundary).chain(clip);
+            std::iter::once(id.0).chain(codes.flat_map(|code| {
+                match code {
+                    Ok(code) => code.words(),
+                    Err(Constant::True) => &[u32::MAX],
+                    Err(Constant::False) => &[],
+                }
+                .iter()
+                .copied()
+            }))
+        });
+        fingerprint(&self.scene.operands, words)
+    }
+}
+
+pub(super) fn candidates<'a>(scene: &'a Scene, frame: &SceneFrame) -> Vec<Candidate<'a>> {
+    let objects = scene.objects().iter().enumerate();
+    objects
+        .filter_map(|(index, object)| Candidate::new(index, object, frame))
+        .collect()
+}
+
+impl Ranked {
+    pub(super) fn new(candidate: &Candidate<'_>) -> Self {
+        Self {
+            object: candidate.id,
+            priority: candidate.object.priority,
+            shell: matches!(candidate.object.shape, Shape::Sheet(_)),
+        }
+    }
+}
