@@ -13,6 +13,7 @@ use pyo3::prelude::*;
 
 use crate::diagnostics::invalid_scene;
 use crate::files;
+use crate::image::os_error;
 use crate::pool::pool;
 use crate::scene::Scene;
 use crate::task;
@@ -59,7 +60,10 @@ pub(crate) fn prepared(
 
 /// The list of cells in a file.
 pub(crate) fn read_cells(path: &Path) -> PyResult<CellList> {
-    let text = std::fs::read_to_string(path)?;
+    let bytes = std::fs::read(path).map_err(|error| os_error(path, &error))?;
+    let text = String::from_utf8(bytes).map_err(|_| {
+        PyValueError::new_err(format!("{}: a list of cells is UTF-8 text", path.display()))
+    })?;
     CellList::parse(&text)
         .map_err(|error| PyValueError::new_err(format!("{}: {error}", path.display())))
 }
@@ -72,7 +76,7 @@ pub(crate) fn write_cells(path: &Path, prepared: &Prepared) -> PyResult<()> {
             "`{method}` makes no octree over solids of this scene"
         ))
     })?;
-    Ok(files::replace(path, list.to_string().as_bytes())?)
+    files::replace(path, list.to_string().as_bytes()).map_err(|error| os_error(path, &error))
 }
 
 /// The scene's world, made now and kept for the queries to come; along a list of cells if there is
