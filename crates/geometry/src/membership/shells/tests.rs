@@ -1,5 +1,7 @@
 //! No cube that the surface meets is missing, and few are that it does not.
 
+mod marked_cells;
+
 use octray_math::{Aabb, DAffine3, DMat3, DVec2, DVec3, Ray};
 
 use super::{ShellPatch, StepCounts, cover, shells};
