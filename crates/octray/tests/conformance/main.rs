@@ -25,6 +25,8 @@ use scenes::{Collection, Specimen};
 
 /// Scenes of more primitives are not small.
 const SMALL: usize = 2_000;
+/// What cells may take by default, in bytes.
+const MEMORY_LIMIT: u64 = 512 << 10;
 /// Nor are those of which brute force, for 16 x 12 pixels, makes more intersection tests.
 const LITTLE_WORK: u64 = 20_000;
 /// Of the corpus's small scenes, one in so many is rendered by every method without being asked to.
@@ -87,6 +89,7 @@ const PREVIEW: (u32, u32) = (16, 12);
 struct Subject {
     specimen: Specimen,
     class: Class,
+    full: bool,
     questions: Questions,
     brute: Evidence,
 }
@@ -207,7 +210,12 @@ fn every_method_shows_what_brute_force_shows() {
 
 impl Subject {
     fn difference(&self, combination: &Combination) -> Option<String> {
-        let evidence = Evidence::of(&self.specimen, &combination.config(), self.questions);
+        let mut config = combination.config();
+        if !self.full {
+            // Building is most of the work, and few cells are as wrong as many.
+            config.criteria.memory_limit = config.criteria.memory_limit.min(MEMORY_LIMIT);
+        }
+        let evidence = Evidence::of(&self.specimen, &config, self.questions);
         let difference = evidence.difference(&self.brute)?;
         Some(format!(
             "{} by {combination}: {difference}",
@@ -228,6 +236,7 @@ fn distinct(specimens: Vec<Specimen>, full: bool) -> Vec<Subject> {
         eprintln!("by brute force: {}", specimen.name);
         Subject {
             brute,
+            full,
             class,
             questions,
             specimen,
