@@ -517,3 +517,20 @@ def test_numbers_are_short_and_have_no_exponent() -> None:
     assert [number(x) for x in (None, 0.0, 1234.5, 12.345, 0.000012)] == [
         *("-", "0", "1234", "12.3", "0.000012")
     ]
+
+
+def test_marks_of_solids_are_counted_against_the_analytic_test() -> None:
+    methods = ["octree", "octree:tree:ordered:bounding-sphere", "octree:tree:ordered:shells"]
+    report = lab.run(COUPLING, accel=methods, size=(16, 12), repeat=1)
+    check_against_page(json.loads(report.to_json()))
+    analytic, sphere, shells = report.to_dict()["combinations"]
+    for entry in (sphere, shells):
+        found = entry["membership"]
+        direct = octray.load(COUPLING).stats(accel=entry["method"])["trees"]["membership"]
+        assert found["marks"] == direct["marks"] > 0
+        if analytic["membership"] is None:
+            assert found["in_vain"] is None
+        else:
+            assert found["in_vain"] == found["marks"] - analytic["membership"]["marks"]
+    assert shells["membership"]["pieces"] > sphere["membership"]["pieces"]
+    assert sum(shells["membership"]["steps"].values()) > 0

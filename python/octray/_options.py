@@ -10,7 +10,8 @@ if TYPE_CHECKING:
     from octray._core import Image
 
 #: How surfaces are found: ``auto``, ``brute``, ``spheres``, ``boxes``, ``grid[:N]`` or
-#: ``octree[:ENCODING[:TRAVERSAL]]`` (see ``octray.methods()``). The answers are the same bits.
+#: ``octree[:ENCODING[:TRAVERSAL[:MEMBERSHIP]]]``, as in ``octree:tree:beam:shells``;
+#: ``octray.methods()`` lists all of them. The answers are the same bits.
 Accel = str
 MeshRule = Literal["strict", "winding"]
 #: Whose intervals count where solids overlap.

@@ -3,6 +3,7 @@
 use octray_math::{Aabb, DAffine3, DVec3};
 
 use crate::ShapeError;
+use crate::flat_boundary::FlatBoundary;
 use crate::profile::{Formula, MAX_FORMULA_DEPTH};
 use crate::surface::Canonical;
 
@@ -46,6 +47,7 @@ pub struct Composite {
     faces: Vec<CompositeFace>,
     formula: Formula,
     bounds: Aabb,
+    flat: Option<FlatBoundary>,
 }
 
 impl Composite {
@@ -67,7 +69,21 @@ impl Composite {
             faces,
             formula,
             bounds,
+            flat: None,
         })
+    }
+
+    /// The same solid, knowing that its boundary consists of plane polygons.
+    pub(crate) fn with_flat_boundary(self, flat: FlatBoundary) -> Self {
+        Self {
+            flat: Some(flat),
+            ..self
+        }
+    }
+
+    /// The plane polygons of its boundary, where there are no others.
+    pub(crate) const fn flat(&self) -> Option<&FlatBoundary> {
+        self.flat.as_ref()
     }
 
     /// What it was made as.

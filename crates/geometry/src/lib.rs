@@ -6,6 +6,7 @@
 
 mod composite;
 pub mod csg;
+mod flat_boundary;
 mod frame;
 mod identity;
 mod implicit;

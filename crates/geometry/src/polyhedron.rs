@@ -7,6 +7,7 @@
 use octray_math::{Aabb, DVec3};
 
 use crate::composite::{Composite, CompositeFace, CompositeKind};
+use crate::flat_boundary::FlatBoundary;
 use crate::polygon::Triangulator;
 use crate::profile::{Formula, MAX_FORMULA_DEPTH};
 use crate::{ShapeError, TriangleMesh};
@@ -53,6 +54,8 @@ pub(crate) fn polyhedron(vertices: &[DVec3], faces: &[Vec<u32>]) -> Result<Compo
             corners: t.map(|i| corners[i as usize]).to_vec(),
         }));
     }
+    let corners = |part: &Part| [part.corners[0], part.corners[1], part.corners[2]];
+    let triangles: Vec<[DVec3; 3]> = parts.iter().map(corners).collect();
     let probes: Vec<(DVec3, DVec3)> = parts
         .iter()
         .filter(|part| area(&part.corners) > tolerance * tolerance)
@@ -63,6 +66,7 @@ pub(crate) fn polyhedron(vertices: &[DVec3], faces: &[Vec<u32>]) -> Result<Compo
             )
         })
         .collect();
+    let flat = FlatBoundary::Triangles(triangles.into());
     let mut partition = Partition {
         planes: &planes,
         tolerance,
@@ -87,7 +91,8 @@ pub(crate) fn polyhedron(vertices: &[DVec3], faces: &[Vec<u32>]) -> Result<Compo
         .into_iter()
         .map(|(normal, point)| CompositeFace::Plane { normal, point })
         .collect();
-    Composite::new(CompositeKind::Polyhedron, faces, formula, bounds)
+    let composite = Composite::new(CompositeKind::Polyhedron, faces, formula, bounds)?;
+    Ok(composite.with_flat_boundary(flat))
 }
 
 /// Where the corners of a face are.

@@ -291,7 +291,7 @@ impl Scene {
             load: lvsi_load,
         };
         let config = building.config(accel)?;
-        let cells = cells.map(|path| read_cells(&path)).transpose()?;
+        let cells = cells.map(read_cells).transpose()?;
         prepare(slf, config, cells, threads).map(|_| ())
     }
 

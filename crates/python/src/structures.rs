@@ -1,7 +1,7 @@
 //! Figures about what was built, as dictionaries.
 //!
 //! `trees.cells`, `trees.triangles` and `trees.wide` are about the cells over solids, those over the
-//! triangles of sheets, where each triangle is an object, and the wide tree over these; `None` where
+//! triangles of sheets, where each triangle is a part, and the wide tree over these; `None` where
 //! the method has none. Of a grid, cells are voxels, at depth 0. `triangle_cube` says of cells over
 //! triangles how many `questions` were asked while they were divided, which of the `steps` of the
 //! triangle-cube test decided how many, how many `references` to triangles the cells keep, and how
@@ -17,9 +17,9 @@
 //! | `resolution` | of a grid, voxels on each axis |
 //! | `lvsi` | of a hash table, `leaves` stored, `rows` used, `table_size`, `heads_used`, `longest_chain`, `bytes`, `bytes_per_leaf` |
 //!
-//! `trees.triangle_cells` says the same of the cells over triangles, with `questions`, how often it was
-//! asked whether a triangle touches a cell, and `decided_by_step`, how many of them each of the four
-//! steps of the triangle-cube test decided.
+//! `trees.membership` is of the test by which octrees of solids were built: how many `operands` it had,
+//! the `pieces` made for them, `peak_bytes` of these and the `bytes` left after the build, the
+//! `chord_error` of shells, the `steps` that decided, and `marks`, pairs of a cell and an operand.
 //!
 //! `memory` is bytes by part (see `octray::world::MemoryStats`), their `total`, and `peak_bytes` of the
 //! process, where the system tells.

@@ -1,18 +1,19 @@
 //! The scene made ready for rays, kept until the scene changes.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use octray::import::dress;
 use octray::math::{Aabb, DVec3};
 use octray::scene;
-use octray::world::{CellList, Method, MethodError, World, WorldConfig, WorldError};
+use octray::world::{CellList, CellListError, Method, MethodError, World, WorldConfig, WorldError};
 use pyo3::exceptions::{PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
 
 use crate::diagnostics::invalid_scene;
 use crate::files;
+use crate::image::os_error;
 use crate::pool::pool;
 use crate::scene::Scene;
 use crate::task;
@@ -58,10 +59,19 @@ pub(crate) fn prepared(
 }
 
 /// The list of cells in a file.
-pub(crate) fn read_cells(path: &Path) -> PyResult<CellList> {
-    let text = std::fs::read_to_string(path)?;
-    CellList::parse(&text)
-        .map_err(|error| PyValueError::new_err(format!("{}: {error}", path.display())))
+pub(crate) fn read_cells(path: PathBuf) -> PyResult<(PathBuf, CellList)> {
+    let bytes = std::fs::read(&path).map_err(|error| os_error(&path, &error))?;
+    let text = String::from_utf8(bytes).map_err(|_| {
+        PyValueError::new_err(format!("{}: a list of cells is UTF-8 text", path.display()))
+    })?;
+    match CellList::parse(&text) {
+        Ok(cells) => Ok((path, cells)),
+        Err(error) => Err(unusable(&path, &error)),
+    }
+}
+
+fn unusable(path: &Path, error: &CellListError) -> PyErr {
+    PyValueError::new_err(format!("{}: {error}", path.display()))
 }
 
 /// Writes the cells of the octree over solids as a list.
@@ -72,7 +82,7 @@ pub(crate) fn write_cells(path: &Path, prepared: &Prepared) -> PyResult<()> {
             "`{method}` makes no octree over solids of this scene"
         ))
     })?;
-    Ok(files::replace(path, list.to_string().as_bytes())?)
+    files::replace(path, list.to_string().as_bytes()).map_err(|error| os_error(path, &error))
 }
 
 /// The scene's world, made now and kept for the queries to come; along a list of cells if there is
@@ -80,7 +90,7 @@ pub(crate) fn write_cells(path: &Path, prepared: &Prepared) -> PyResult<()> {
 pub(crate) fn prepare(
     scene: &Bound<'_, Scene>,
     config: WorldConfig,
-    cells: Option<CellList>,
+    cells: Option<(PathBuf, CellList)>,
     threads: Option<usize>,
 ) -> PyResult<Prepared> {
     let py = scene.py();
@@ -90,6 +100,7 @@ pub(crate) fn prepare(
         let scene = scene.try_borrow()?;
         (scene.complete(py)?, scene.revision())
     };
+    let (path, cells) = cells.unzip();
     let start = Instant::now();
     let world = task::run(py, move |_| {
         pool.install(|| match &cells {
@@ -99,7 +110,7 @@ pub(crate) fn prepare(
     })
     .inspect_err(|_| crate::pool::discard())?;
     let world = world.map_err(|error| match error {
-        WorldError::Cells(error) => PyValueError::new_err(error.to_string()),
+        WorldError::Cells(error) => unusable(&path.unwrap_or_default(), &error),
         error => invalid_scene(py, &[error]),
     })?;
     let prepared = Prepared {

@@ -35,8 +35,9 @@ accel_option = click.option(
     show_default=True,
     help=(
         "How surfaces are found: auto, brute, spheres, boxes, grid[:N] or "
-        "octree[:ENCODING[:TRAVERSAL]] with the encodings tree, lvsi, lvsi-empty and the "
-        "traversals ordered, sung, fujimoto-iwata. The answers are the same."
+        "octree[:ENCODING[:TRAVERSAL[:MEMBERSHIP]]]. Encodings: tree, lvsi, lvsi-empty; "
+        "traversals: ordered, sung, fujimoto-iwata, beam; memberships: analytic, bounding-box, "
+        "bounding-sphere, bounding-cover, shells. The answers are the same."
     ),
 )
 threads_option = click.option(

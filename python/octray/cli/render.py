@@ -159,6 +159,8 @@ class _Run:
                 scene.dump_cells(options["dump_cells"], **how)
         except ValueError as error:
             raise click.UsageError(str(error)) from error
+        except OSError as error:
+            raise FailureError(f"{error.filename}: {error.strerror or error}") from error
 
     def _load(self) -> Scene:
         with self._phase("import"):

@@ -37,6 +37,8 @@ class Figures:
     #: how many of the questions each step of the triangle-cube test decided.
     marks: dict[str, int] | None = None
     triangle_cube_steps: dict[str, int] | None = None
+    #: The membership test of solids: its temporary pieces, its steps, and the marks it made.
+    membership: dict[str, Any] | None = None
     #: Numbers of rays by kind.
     rays: dict[str, int] | None = None
     #: What a ray cost on average, of all and by kind of ray.
@@ -76,11 +78,11 @@ def _depths(trees: list[dict[str, Any]]) -> list[list[int]] | None:
     return [[d, leaves("empty", d), leaves("occupied", d)] for d in range(deepest + 1)]
 
 
-def _per_leaf(trees: list[dict[str, Any]]) -> list[list[int]]:
-    """Sum the leaves of all trees by how many objects they hold."""
+def _per_leaf(trees: dict[str, Any]) -> list[list[int]]:
+    """Sum the leaves by how many objects they hold; of a mesh sheet, each triangle counts."""
     counts: dict[int, int] = {}
-    for tree in trees:
-        for number, leaves in tree["objects_per_leaf"]["counts"]:
+    for over, what in (("cells", "objects_per_leaf"), ("triangles", "parts_per_leaf")):
+        for number, leaves in trees[over][what]["counts"] if trees[over] else ():
             counts[number] = counts.get(number, 0) + leaves
     return [[number, counts[number]] for number in sorted(counts)]
 
@@ -98,7 +100,7 @@ def _of_trees(figures: Figures, trees: dict[str, Any]) -> None:
     figures.nodes = nodes or None
     if not cells:
         return
-    figures.depths, figures.per_leaf = _depths(cells), _per_leaf(cells)
+    figures.depths, figures.per_leaf = _depths(cells), _per_leaf(trees)
     figures.stopped = {
         "depth": sum(tree["stopped_by_depth"] for tree in cells),
         "size": sum(tree["stopped_by_size"] for tree in cells),
@@ -117,6 +119,9 @@ def of(report: dict[str, Any] | None, stats: dict[str, Any] | None) -> Figures:
         figures.parts = {part: n for part, n in memory.items() if part not in _NO_PARTS}
         figures.memory = sum((figures.structure or {}).values())
         figures.building = memory["building"]
+        membership = built["trees"]["membership"]
+        if membership is not None:
+            figures.membership = dict(membership)
         marks = built["triangle_cube"]
         if marks is not None:
             figures.triangle_cube_steps = marks["steps"]

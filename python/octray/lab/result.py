@@ -96,6 +96,7 @@ class Combination:
             "lvsi": found.lvsi,
             "marks": found.marks,
             "triangle_cube_steps": found.triangle_cube_steps,
+            "membership": found.membership,
             "rays": found.rays,
             "per_ray": found.per_ray,
             "per_ray_by_kind": found.per_ray_by_kind,
@@ -178,6 +179,25 @@ class Report:
         """Give the methods whose picture is not the reference's."""
         return [c for c in self.combinations if c.same is False]
 
+    def in_vain(self, combination: Combination) -> int | None:
+        """Count marks of solids beyond those of ``analytic`` by the same encoding and traversal.
+
+        ``None`` where either has none. Cells are not the same for all tests, so it may be negative.
+        """
+        found = figures.of(combination.report, combination.stats).membership
+        least = f"{combination.method.rpartition(':')[0]}:analytic"
+        for other in self.combinations:
+            known = figures.of(other.report, other.stats).membership
+            if other.method == least and found and known:
+                return int(found["marks"] - known["marks"])
+        return None
+
+    def _entry(self, combination: Combination) -> dict[str, Any]:
+        entry = combination.to_dict()
+        if entry["membership"] is not None:
+            entry["membership"]["in_vain"] = self.in_vain(combination)
+        return entry
+
     def to_dict(self) -> dict[str, Any]:
         """Give the JSON object that docs/lab-json.md describes."""
         return {
@@ -192,7 +212,7 @@ class Report:
                 {"methods": group.methods, "yardstick_s": group.yardstick_s}
                 for group in self.groups
             ],
-            "combinations": [combination.to_dict() for combination in self.combinations],
+            "combinations": [self._entry(combination) for combination in self.combinations],
             "cut_off": [c.method for c in self.cut_off],
             "missing": [c.method for c in self.missing],
             "different": [c.method for c in self.different],

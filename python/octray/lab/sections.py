@@ -10,7 +10,7 @@ from octray.lab.figure import data_uri
 from octray.lab.projection import view
 
 if TYPE_CHECKING:
-    from octray.lab.result import Report
+    from octray.lab.result import Combination, Report
 
 _escape = html.escape
 
@@ -29,6 +29,18 @@ def picture_element(png: bytes, label: str, kind: str = "") -> str:
     """Give an ``<img>`` that holds the picture itself."""
     style = f' class="{kind}"' if kind else ""
     return f'<img{style} src="{data_uri(png)}" alt="{_escape(label)}">'
+
+
+def _marks(report: Report, combination: Combination) -> dict[str, int] | None:
+    """Give the pairs of cells and what may touch them; those in vain apart, where that is known."""
+    found = figures.of(combination.report, combination.stats)
+    marks: dict[str, int] = {}
+    if found.membership is not None:
+        vain = max(report.in_vain(combination) or 0, 0)
+        marks = {"primitives": found.membership["marks"] - vain, "in vain": vain}
+    if found.marks is not None:
+        marks["triangles"] = found.marks["references"]
+    return marks or None
 
 
 def charts_section(report: Report) -> str:
@@ -78,6 +90,13 @@ def charts_section(report: Report) -> str:
                 ),
                 "Leaves by how many objects they hold",
                 "How many leaves hold how many objects: what a ray that enters one has to ask.",
+            ),
+            framed(
+                charts.stacked("marks", "Marks", them, [_marks(report, c) for c in them]),
+                "Marks: pairs of a cell and what may touch it",
+                "Primitives of solids as the membership test found them, and triangles of sheets."
+                " In vain are those beyond what the analytic test finds by the same encoding and"
+                " traversal in this run, where it ran.",
             ),
             "<h2>Work per ray</h2>",
             framed(

@@ -8,10 +8,10 @@
 //!
 //! | surface | shells |
 //! |---|---|
-//! | box, half-space, convex polyhedron, mesh, caps | the boundary polygons themselves, both shells in one |
+//! | box, half-space, polyhedron, prism of straight edges, mesh, caps | the boundary polygons themselves, both shells in one |
 //! | sphere, cylinder, cone | triangles with corners on the surface, and the same ones scaled outwards |
 //! | torus, also the outer shape of a spindle | nets on tubes of two radii, by a bound of the second derivatives |
-//! | quadrics, polynomials, superellipsoids, prisms, lathes, concave polyhedra | both sides of a layer of boxes that the boundary may cross |
+//! | quadrics, polynomials, superellipsoids, curved prisms, lathes | both sides of a layer of boxes that the boundary may cross |
 //!
 //! All of it is made in the primitive's own frame: hulls survive any affine map.
 
@@ -29,6 +29,7 @@ use std::sync::Arc;
 use octray_math::{Aabb, DAffine3, DVec3};
 
 use crate::Primitive;
+use crate::profile::Formula;
 use crate::surface::Canonical;
 
 pub use patch::{ShellPatch, StepCounts};
@@ -93,13 +94,15 @@ pub fn shells(
             chord_error: 0.0,
         };
     }
-    let layered = |crosses: &dyn Fn(&Aabb) -> bool| {
+    let layered = |formula: &Formula, narrow: &dyn Fn(&Formula, &Aabb) -> Option<Formula>| {
         let m = scene_from_local.matrix3;
         let scale = DVec3::new(m.x_axis.length(), m.y_axis.length(), m.z_axis.length());
-        let cells = layer::boxes(&region, scale, chord_error, (limit / 2).max(1), crosses);
+        let most = (limit / 2).max(1);
+        let cells = layer::boxes(&region, scale, chord_error, most, formula, narrow);
         let thickness = cells.first().map_or(0.0, |cell| cell.diagonal());
         (cells.iter().flat_map(layer::prisms).collect(), thickness)
     };
+    let one = |canonical| layered(&Formula::inside(0), &layer::crosses(canonical));
     let ends = |z: &[f64; 2]| [z[0].max(region.min.z), z[1].min(region.max.z)];
     let (patches, error): (Vec<ShellPatch>, f64) = match primitive {
         Primitive::Sphere { radius } => {
@@ -120,21 +123,28 @@ pub fn shells(
             let patches = patches.iter().map(|p| p.transformed(&scaled));
             (patches.collect(), error * major)
         }
-        Primitive::Quadric(form) => layered(&layer::crosses(Canonical::Quadric(*form))),
+        Primitive::Quadric(form) => one(Canonical::Quadric(*form)),
         Primitive::Polynomial { polynomial, .. } => {
-            let canonical = Canonical::Polynomial(Arc::clone(polynomial));
-            layered(&layer::crosses(canonical))
+            one(Canonical::Polynomial(Arc::clone(polynomial)))
         }
         Primitive::Superellipsoid { exponents } => {
             let exponents = *exponents;
-            layered(&layer::crosses(Canonical::Superellipsoid { exponents }))
+            one(Canonical::Superellipsoid { exponents })
         }
         Primitive::HalfSpace { normal, offset } => {
             let (center, radius) = (region.center(), 0.5 * region.diagonal());
             (flat::plane(*normal, *offset, center, radius), 0.0)
         }
         Primitive::Convex(polyhedron) => (flat::convex(polyhedron), 0.0),
-        Primitive::Composite(composite) => layered(&layer::composite_crosses(composite)),
+        Primitive::Composite(composite) => {
+            // What is smaller than the error needs no more than its box.
+            let flat = composite.flat().filter(|_| region.diagonal() > aim);
+            let triangles = flat.and_then(|flat| flat.triangles(limit));
+            match triangles {
+                Some(t) => (t.into_iter().map(ShellPatch::flat).collect(), 0.0),
+                None => layered(composite.formula(), &layer::composite_crosses(composite)),
+            }
+        }
         Primitive::Mesh(mesh) => {
             return Shells {
                 patches: flat::mesh(mesh, scene_from_local),
