@@ -1,9 +1,8 @@
 //! One suite for every method over whole scenes: pictures and answers to the bit as by brute force.
 //!
-//! By default the project's own small scenes (up to 2,000 primitives, and not much work) are rendered
-//! by every method, and so is one in [`SAMPLE`] of the corpus's. The others are dealt a selection of
-//! combinations that has every pair, large scenes with smaller pictures; large meshes are asked by
-//! 2,000 rays.
+//! By default small scenes (up to 2,000 primitives, and not much work) are rendered by every method; the others
+//! are dealt a selection of combinations that together has every pair, large scenes with smaller pictures;
+//! large meshes are asked by 2,000 rays.
 //! `OCTRAY_CONFORMANCE=full` (what `make conformance` sets) takes the full product and the full size
 //! everywhere;
 //! `OCTRAY_CONFORMANCE_SCENE` takes only the scenes whose name contains its value.
@@ -29,17 +28,16 @@ const SMALL: usize = 2_000;
 const MEMORY_LIMIT: u64 = 512 << 10;
 /// Nor are those of which brute force, for 16 x 12 pixels, makes more intersection tests.
 const LITTLE_WORK: u64 = 20_000;
-/// Of the corpus's small scenes, one in so many is rendered by every method without being asked to.
-const SAMPLE: usize = 8;
+/// Of solids that overlap a ray in their thousands brute force asks each again at every change: without being
+/// asked to, it does not.
+const ENDLESS: usize = 5_000;
 /// The selection goes round among so many large scenes, or meshes.
-const HANDS: usize = 8;
+const HANDS: usize = 32;
 
 /// How a scene is looked at.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 enum Class {
     Small,
-    /// Small ones that are not in the sample.
-    Dealt,
     Large,
     Mesh,
 }
@@ -59,7 +57,7 @@ impl Class {
 
     const fn questions(self, full: bool) -> Questions {
         let (picture, rays) = match (self, full) {
-            (Self::Small | Self::Dealt, _) | (Self::Large, true) => (Some((64, 48)), 64),
+            (Self::Small, _) | (Self::Large, true) => (Some((64, 48)), 64),
             (Self::Large, false) => (Some(PREVIEW), 64),
             (Self::Mesh, _) => (None, 2_000),
         };
@@ -75,7 +73,7 @@ impl Class {
         match (self, full) {
             (_, true) => product(),
             (Self::Small, _) => usual(),
-            (Self::Dealt | Self::Large | Self::Mesh, _) => {
+            (Self::Large | Self::Mesh, _) => {
                 let all = pairwise().iter().copied().skip(place % HANDS);
                 all.step_by(HANDS).collect()
             }
@@ -117,18 +115,16 @@ fn every_method_shows_what_brute_force_shows() {
     for reason in skipped {
         println!("skipped: {reason}");
     }
-    specimens.retain(|specimen| specimen.name.contains(&only));
-    let mut subjects = distinct(specimens, full);
-    if !full {
-        let is_small = |subject: &&mut Subject| subject.class == Class::Small;
-        let of_corpus = |subject: &&mut Subject| !subject.specimen.name.starts_with("scenes/");
-        let theirs = subjects.iter_mut().filter(is_small).filter(of_corpus);
-        for (i, subject) in theirs.enumerate() {
-            if !i.is_multiple_of(SAMPLE) {
-                subject.class = Class::Dealt;
-            }
+    specimens.retain(|specimen| {
+        let is_ours = specimen.name.starts_with("scenes/");
+        let is_large = !specimen.is_mesh && specimen.primitives > ENDLESS;
+        let endless = is_large && !is_ours && !full;
+        if endless {
+            println!("skipped: {}: brute force takes minutes", specimen.name);
         }
-    }
+        !endless && specimen.name.contains(&only)
+    });
+    let subjects = distinct(specimens, full);
     let mut places: BTreeMap<Class, usize> = BTreeMap::new();
     let mut work = Vec::new();
     for subject in &subjects {
@@ -229,11 +225,13 @@ impl Subject {
 #[expect(clippy::print_stderr, reason = "long runs say how far they are")]
 fn distinct(specimens: Vec<Specimen>, full: bool) -> Vec<Subject> {
     let by_brute_force = |specimen: Specimen| {
+        let start = Instant::now();
         let class = Class::of(&specimen);
         let questions = class.questions(full);
         let config = Combination::BRUTE.config();
         let brute = Evidence::of(&specimen, &config, questions);
-        eprintln!("by brute force: {}", specimen.name);
+        let took = start.elapsed().as_millis();
+        eprintln!("by brute force: {} ({class:?}) in {took} ms", specimen.name);
         Subject {
             brute,
             full,
