@@ -3,6 +3,7 @@
 
 use std::collections::BTreeSet;
 use std::fmt;
+use std::sync::LazyLock;
 
 use octray::world::{Criteria, Encoding, LvsiTable, Method, TableSize, WorldConfig};
 
@@ -220,7 +221,13 @@ pub(crate) fn product() -> Vec<Combination> {
 
 /// Few combinations in which every pair of levels occurs that occurs in any: greedily the one with
 /// most pairs that are new.
-pub(crate) fn pairwise() -> Vec<Combination> {
+pub(crate) fn pairwise() -> &'static [Combination] {
+    // Choosing takes a second, and every scene asks.
+    static CHOSEN: LazyLock<Vec<Combination>> = LazyLock::new(choose_pairwise);
+    &CHOSEN
+}
+
+fn choose_pairwise() -> Vec<Combination> {
     let all: Vec<_> = product().into_iter().map(|c| (c.pairs(), c)).collect();
     let mut covered = BTreeSet::new();
     let mut chosen = Vec::new();

@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use octray::math::{Aabb, DVec3, Ray, hash_combine, unit_f64};
 use octray::render::{Film, RenderConfig, RenderError, Rendering, render};
-use octray::world::{Chord, Counters, Hit, Overlaps, RayQuery, Region, World, WorldConfig};
+use octray::world::{Chord, Counters, Hit, Method, Overlaps, RayQuery, Region, World, WorldConfig};
 use rayon::prelude::*;
 
 use crate::combination::Combination;
@@ -17,6 +17,9 @@ pub(crate) struct Questions {
     pub(crate) picture: Option<(u32, u32)>,
     /// How many rays to ask.
     pub(crate) rays: u64,
+    /// Whether brute force goes along each ray's whole line once only, where all is opaque: the
+    /// nearest surface and whether there is one then follow from the list of all.
+    pub(crate) one_pass: bool,
 }
 
 /// The answers about one ray.
@@ -54,7 +57,10 @@ impl Evidence {
                     .picture
                     .and_then(|size| picture(&world, size))
                     .map(|r| r.film),
-                answers: answers(&world, questions.rays),
+                answers: answers(&world, questions.rays, {
+                    let is_brute = config.method == Method::Brute;
+                    is_brute && questions.one_pass && !world.has_transparency()
+                }),
             },
         }
     }
@@ -153,13 +159,13 @@ pub(crate) fn ray(bounds: &Aabb, number: u64) -> Ray {
 /// Rays are asked in slices of so many.
 const SLICE: u64 = 64;
 
-fn answers(world: &World, rays: u64) -> Vec<Answers> {
+fn answers(world: &World, rays: u64, one_pass: bool) -> Vec<Answers> {
     let slices = rays.div_ceil(SLICE);
-    let slice = |i: u64| answers_of(world, i * SLICE..rays.min((i + 1) * SLICE));
+    let slice = |i: u64| answers_of(world, i * SLICE..rays.min((i + 1) * SLICE), one_pass);
     (0..slices).into_par_iter().flat_map_iter(slice).collect()
 }
 
-fn answers_of(world: &World, numbers: Range<u64>) -> Vec<Answers> {
+fn answers_of(world: &World, numbers: Range<u64>, one_pass: bool) -> Vec<Answers> {
     let bounds = world.bounds();
     let queries: Vec<RayQuery> = numbers
         .map(|number| RayQuery::new(ray(&bounds, number)))
@@ -167,8 +173,22 @@ fn answers_of(world: &World, numbers: Range<u64>) -> Vec<Answers> {
     let mut counters = Counters::default();
     let (mut closest, mut next) = (Vec::new(), Vec::new());
     let (mut occluded, mut regions) = (Vec::new(), Vec::new());
-    world.closest(&queries, &mut closest, &mut counters);
-    world.occluded(&queries, &mut occluded, &mut counters);
+    let lines: Vec<Vec<Hit>> = queries
+        .iter()
+        .map(|query| {
+            let mut hits = Vec::new();
+            world.crossings(query, true, &mut hits, &mut counters);
+            hits
+        })
+        .collect();
+    if one_pass {
+        let ahead = |hits: &Vec<Hit>| hits.iter().copied().find(|hit| hit.t > 0.0);
+        closest.extend(lines.iter().map(|hits| ahead(hits).unwrap_or(Hit::MISS)));
+        occluded.extend(closest.iter().map(|hit| !hit.is_miss()));
+    } else {
+        world.closest(&queries, &mut closest, &mut counters);
+        world.occluded(&queries, &mut occluded, &mut counters);
+    }
     let departing = |(query, hit): (&RayQuery, &Hit)| {
         if hit.is_miss() {
             return *query;
@@ -188,13 +208,11 @@ fn answers_of(world: &World, numbers: Range<u64>) -> Vec<Answers> {
     world.closest(&departing, &mut next, &mut counters);
     let points: Vec<DVec3> = queries.iter().map(|query| query.ray.origin).collect();
     world.regions(&points, &mut regions, &mut counters);
-    let of_line = |index: usize| {
-        let (mut crossings, mut chords) = (Vec::new(), Vec::new());
-        let query = &queries[index];
+    let of_line = |(index, crossings): (usize, Vec<Hit>)| {
+        let mut chords = Vec::new();
         let mut counters = Counters::default();
-        world.crossings(query, true, &mut crossings, &mut counters);
         let kind = Overlaps::Objects;
-        world.chords(query, true, kind, &mut chords, &mut counters);
+        world.chords(&queries[index], true, kind, &mut chords, &mut counters);
         Answers {
             closest: closest[index],
             occluded: occluded[index],
@@ -204,5 +222,5 @@ fn answers_of(world: &World, numbers: Range<u64>) -> Vec<Answers> {
             region: regions[index],
         }
     };
-    (0..queries.len()).map(of_line).collect()
+    lines.into_iter().enumerate().map(of_line).collect()
 }
