@@ -7,6 +7,7 @@ use octray_geometry::{CornerAttribute, MaterialId, Sheet, Solid, TriangleMesh};
 use octray_math::{DAffine3, DVec3};
 use octray_scene::{Interior, Object, SceneBuilder};
 
+use super::materials::Materials;
 use super::object::{Geometry, MeshDef, ObjectDef, Operation};
 use super::texture::Texture;
 use crate::mesh_object::mesh_solid;
@@ -40,8 +41,7 @@ pub(super) struct Lowering<'a> {
     diagnostics: &'a mut Diagnostics,
     pub(super) builder: &'a mut SceneBuilder,
     default_texture: Rc<Texture>,
-    /// By what a material says, spelled out.
-    pub(super) materials: BTreeMap<String, MaterialId>,
+    pub(super) materials: Materials,
     triangles: BTreeMap<(MaterialId, bool), Batch>,
     warned: std::collections::BTreeSet<(u32, usize, String)>,
 }
@@ -56,7 +56,7 @@ impl<'a> Lowering<'a> {
             diagnostics,
             builder,
             default_texture,
-            materials: BTreeMap::new(),
+            materials: Materials::default(),
             triangles: BTreeMap::new(),
             warned: std::collections::BTreeSet::new(),
         }
