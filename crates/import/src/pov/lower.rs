@@ -7,7 +7,6 @@ use octray_geometry::{CornerAttribute, MaterialId, Sheet, Solid, TriangleMesh};
 use octray_math::{DAffine3, DVec3};
 use octray_scene::{Interior, Object, SceneBuilder};
 
-use super::materials::Materials;
 use super::object::{Geometry, MeshDef, ObjectDef, Operation};
 use super::texture::Texture;
 use crate::mesh_object::mesh_solid;
@@ -41,7 +40,8 @@ pub(super) struct Lowering<'a> {
     diagnostics: &'a mut Diagnostics,
     pub(super) builder: &'a mut SceneBuilder,
     default_texture: Rc<Texture>,
-    pub(super) materials: Materials,
+    /// By what a material says, spelled out.
+    pub(super) materials: BTreeMap<String, MaterialId>,
     triangles: BTreeMap<(MaterialId, bool), Batch>,
     warned: std::collections::BTreeSet<(u32, usize, String)>,
 }
@@ -56,7 +56,7 @@ impl<'a> Lowering<'a> {
             diagnostics,
             builder,
             default_texture,
-            materials: Materials::default(),
+            materials: BTreeMap::new(),
             triangles: BTreeMap::new(),
             warned: std::collections::BTreeSet::new(),
         }
