@@ -41,6 +41,8 @@ POVRAY = """\
 #!/bin/sh
 case "$1" in --version) echo "POV-Ray 3.7.test" >&2; exit 0;; esac
 {work}
+echo "Rays:                 600   Saved: 0" >&2
+echo "Shadow Ray Tests:     300   Succeeded: 0" >&2
 echo "  Parse Time:       0 hours  0 minutes  0 seconds (0.250 seconds)" >&2
 echo "  Trace Time:       0 hours  0 minutes  7 seconds (7.500 seconds)" >&2
 """
@@ -87,7 +89,9 @@ def test_a_peer_is_measured_and_compared_round_by_round(
     assert set(report["absent"]) == {"Tachyon", "Mitsuba"}
     names = ["empty32x24", "sphere", "empty320x240", "drilled1"]
     assert list(report["scenes"]) == names
-    assert report["scenes"]["drilled1"]["unfit"] == {"octray, Python": "is for meshes in binary files"}
+    assert report["scenes"]["drilled1"]["unfit"] == {
+        "octray, Python": "is for meshes in binary files"
+    }
     found = {(entry["scene"], entry["program"]): entry for entry in report["series"]}
     assert set(found) == {(n, p) for n in names for p in ("octray", "POV-Ray", "POV-Ray +BM2")}
     ours, theirs = found["sphere", "octray"], found["sphere", "POV-Ray"]
@@ -100,6 +104,10 @@ def test_a_peer_is_measured_and_compared_round_by_round(
         assert 0 <= entry["median"]["cpu_s"] <= 4 * entry["median"]["whole_s"]
     assert theirs["median"]["trace_s"] == 7.5
     assert theirs["median"]["parts"] == {"read": 0.25}
+    # One ray for each pixel, one to the light, and those that the mirror sends.
+    assert {run["rays"] for run in theirs["runs"]} == {900}
+    assert theirs["ray_s"] == 7.5 / 900
+    assert 32 * 24 < ours["runs"][0]["rays"] < 3 * 32 * 24
     assert theirs["median"]["whole_s"] >= 0.1
     ratios = [7.5 / run["trace_s"] for run in ours["runs"]]
     assert theirs["ratio"]["trace_s"] == pytest.approx(statistics.median(ratios))

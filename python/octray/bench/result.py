@@ -39,6 +39,8 @@ class Run:
     peak_bytes: int
     #: Seconds of its other parts by name, as it says.
     parts: dict[str, float]
+    #: Rays of all kinds, as it says.
+    rays: int | None = None
 
     def to_dict(self) -> dict[str, Any]:
         """Give the entry of the JSON object."""
@@ -123,6 +125,11 @@ class Report:
             return None
         return value - base
 
+    def ray_s(self, series: Series) -> float | None:
+        """Give the seconds of tracing for each ray, if the program counts its rays."""
+        told = [run.trace_s / run.rays for run in series.runs if run.rays]
+        return statistics.median(told) if told else None
+
     def bytes_per_shape(self, series: Series) -> float | None:
         """Give the net peak memory for each shape of the scene."""
         net, shapes = self.net(series, "peak_bytes"), sum(self.scenes[series.scene].counts.values())
@@ -174,6 +181,7 @@ class Report:
             "median": {what: series.median(what) for what in measured} | {"parts": series.parts()},
             "net": {what: self.net(series, what) for what in measured},
             "ratio": {what: self.ratio(series, what) for what in measured},
+            "ray_s": self.ray_s(series),
             "bytes_per_shape": self.bytes_per_shape(series),
             "speedup": self.speedup(series),
         }

@@ -130,4 +130,5 @@ class Session:
             cpu_s=cost.cpu_s,
             peak_bytes=cost.peak_bytes,
             parts=figures.parts,
+            rays=figures.rays,
         )
