@@ -16,7 +16,7 @@ use crate::line::{Line, Place};
 use crate::sheets::{SheetHit, Sheets};
 use crate::solids::{Interface, Scratch, Solids};
 use crate::{
-    CellList, CellListError, CellsOf, Counters, Hit, MarkingStats, MemoryStats, Method, RayQuery,
+    CellList, CellListError, CellsOf, Counters, Departure, Hit, MarkingStats, MemoryStats, Method, RayQuery,
     Region,
 };
 
@@ -64,6 +64,8 @@ pub struct World {
     pub(crate) place: Place,
     /// For each material whether no light passes it.
     opaque: Vec<bool>,
+    /// Whether every boundary is seen and stops light.
+    all_blocks: bool,
     pub(crate) scratch: ScratchPool,
 }
 
@@ -156,11 +158,14 @@ impl World {
         let place = Place::new(&scene);
         let solids = Solids::prepare(&scene, &place.frame, config, list, triangles)?;
         let sheets = Sheets::prepare(&scene, &place.frame, solids.face_count(), config)?;
-        let opaque = scene
+        let opaque: Vec<bool> = scene
             .materials()
             .iter()
             .map(|m| !m.pigment.is_transparent())
             .collect();
+        let all_blocks = solids.shows_all()
+            && !opaque.contains(&false)
+            && scene.objects().iter().all(|object| object.casts_shadows);
         let scratch = ScratchPool::default();
         Ok(Self {
             scene,
@@ -168,6 +173,7 @@ impl World {
             sheets,
             place,
             opaque,
+            all_blocks,
             scratch,
         })
     }
@@ -261,7 +267,7 @@ impl World {
         };
         let limit_of = |best: &Option<Interface>| best.map_or(f64::INFINITY, |b| b.s);
         self.solids
-            .sweep_line(line, f64::INFINITY, scratch, counters, |change| {
+            .sweep_forward(line, scratch, counters, |change| {
                 if let Some(found) = change.interface()
                     && nearer(found.s, found.face, &best)
                 {
@@ -338,9 +344,13 @@ impl World {
             counters,
             |hit| visit(hit.s, hit.face, hit.entering),
         );
+        // Where a departure says what lies behind, every change ahead counts.
+        if self.all_blocks && line.departure != Departure::NONE {
+            return found.get() || self.solids.changes(line, scratch, counters);
+        }
         if !found.get() {
             self.solids
-                .sweep_line(line, f64::INFINITY, scratch, counters, |change| {
+                .sweep_forward(line, scratch, counters, |change| {
                     change
                         .interface()
                         .map_or(f64::INFINITY, |i| visit(i.s, i.face, i.entering))
