@@ -106,6 +106,13 @@ impl World {
         surface
     }
 
+    /// The normal of a hit of `query`, as [`World::interact`] has it, for less.
+    #[must_use]
+    pub fn normal(&self, query: &RayQuery, hit: &Hit) -> DVec3 {
+        let of_sheet = self.sheets.normal(hit.face);
+        of_sheet.unwrap_or_else(|| self.interact(query, hit).normal)
+    }
+
     /// What fills a region.
     fn medium(&self, region: Region) -> Option<MaterialId> {
         region
