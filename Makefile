@@ -11,7 +11,11 @@ export PIP_DISABLE_PIP_VERSION_CHECK := 1
 BIN := .venv/bin
 RUST_SOURCES := $(shell find crates -name '*.rs' -o -name Cargo.toml) Cargo.toml Cargo.lock
 
+<<<<<<< HEAD
 .PHONY: help demo test test-rust test-python conformance lint setup lab peers peers-speed peers-meshes embree clean toolchain
+=======
+.PHONY: help demo test test-rust test-python conformance lint setup lab bench peers peers-speed embree clean toolchain
+>>>>>>> main
 .DELETE_ON_ERROR:
 
 help: ## Print this list
@@ -46,6 +50,11 @@ LAB ?= full
 
 lab: .venv/lab ## Run every method on scenes of all sizes into docs/lab; LAB=quick takes a minute
 	@$(BIN)/python benches/lab/run.py --mode $(LAB)
+
+BENCH ?= --all -j 1 -j $(shell getconf _NPROCESSORS_ONLN)
+
+bench: .venv-peers/installed ## Race octray and the other ray tracers that are installed; BENCH= gives options
+	@$(PEERS_PYTHON) -m octray bench $(BENCH)
 
 peers: .venv-peers/installed ## Run the same scenes through octray and the peers that are installed
 	@$(PEERS_PYTHON) benches/peers/compare.py
@@ -92,7 +101,7 @@ DEVELOP := VIRTUAL_ENV='$(CURDIR)/.venv' $(BIN)/maturin develop --release
 
 # Peers have an environment of their own; one that cannot be installed here is left out and said so.
 # POV-Ray and OpenSCAD come from the system's packages.
-PEERS ?= raysect trimesh embreex manifold3d open3d
+PEERS ?= raysect trimesh embreex manifold3d open3d mitsuba
 PEERS_PYTHON := PYTHONPATH=python .venv-peers/bin/python
 
 .venv-peers/installed: .venv/installed
