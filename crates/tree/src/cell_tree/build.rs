@@ -110,33 +110,19 @@ impl CellTree {
         criteria: &Criteria,
     ) -> (Self, Vec<S::Content>) {
         let mut leaves = Vec::new();
-        let beside = Sizes::<S>::BESIDE;
-        let tree = Self::build_leaves(root, contents, subdivide, criteria, beside, &mut |leaf| {
-            leaves.push(leaf);
-        });
+        let mut keep = |leaf| leaves.push(leaf);
+        let tree = Self::build_into(root, contents, subdivide, criteria, &mut keep);
         (tree, leaves)
     }
 
     /// Like [`CellTree::build`], but hands over the contents of the occupied cells one by one, in the
     /// order of their indices, as soon as they are known: then millions of them need not exist side
-    /// by side. They should be kept in no more memory than [`Subdivide::bytes`].
+    /// by side.
     pub fn build_into<S: Subdivide>(
         root: Aabb,
         contents: S::Content,
         subdivide: &S,
         criteria: &Criteria,
-        leaf: &mut impl FnMut(S::Content),
-    ) -> Self {
-        Self::build_leaves(root, contents, subdivide, criteria, 0, leaf)
-    }
-
-    /// `beside`: what every leaf costs whoever keeps it, beside its contents.
-    fn build_leaves<S: Subdivide>(
-        root: Aabb,
-        contents: S::Content,
-        subdivide: &S,
-        criteria: &Criteria,
-        beside: u64,
         leaf: &mut impl FnMut(S::Content),
     ) -> Self {
         let max_depth = criteria.max_depth.min(MAX_DEPTH);
@@ -211,7 +197,7 @@ impl CellTree {
                         subdivide.settle(&mut cell.content);
                         let bytes = subdivide.bytes(&cell.content);
                         tree.stats.bytes += bytes;
-                        leaf_bytes += bytes + beside;
+                        leaf_bytes += bytes + Sizes::<S>::BESIDE;
                         leaf(cell.content);
                         leaves += 1;
                         Node::Occupied(leaves - 1)

@@ -19,12 +19,12 @@ pub(super) struct Candidate<'a> {
     pub(super) clip: Option<&'a Solid>,
     /// In the coordinates of the scene.
     pub(super) bounds: Aabb,
-    /// The diagonal of that box.
-    size: f64,
+    /// How large it counts as where solids overlap.
+    pub(super) size: f64,
 }
 
 /// What merged surfaces and rounding move, many times over.
-pub(super) fn slack(frame: &SceneFrame) -> f64 {
+pub(crate) fn slack(frame: &SceneFrame) -> f64 {
     64.0 * (SURFACE_TOLERANCE * frame.size + PLACE_TOLERANCE * frame.largest())
 }
 
@@ -33,7 +33,7 @@ impl<'a> Candidate<'a> {
         let (boundary, clip) = match &object.shape {
             Shape::Solid(solid) => (solid, None),
             Shape::Sheet(Sheet::Shell { solid, clip }) => (solid, Some(clip)),
-            Shape::Sheet(Sheet::Mesh { .. }) => return None,
+            Shape::Sheet(Sheet::Mesh { .. }) | Shape::Instances(_) => return None,
         };
         // By the same transforms as the faces, so that rounding far from the origin moves both.
         let scene_from_world = frame.scene_from_world();

@@ -66,6 +66,13 @@ impl Solids {
         } = expressions;
         candidates.par_sort_unstable_by(Candidate::rank);
         let ranked: Vec<Ranked> = candidates.iter().map(Ranked::new).collect();
+        let mut sizes = Vec::new();
+        if scene.has_instances() {
+            sizes.resize(scene.objects().len(), 0.0);
+            for candidate in &candidates {
+                sizes[candidate.id.0 as usize] = candidate.size;
+            }
+        }
         let mut rank_of = vec![u32::MAX; scene.objects().len()];
         for (rank, object) in ranked.iter().enumerate() {
             rank_of[object.object.0 as usize] = rank as u32;
@@ -170,6 +177,8 @@ impl Solids {
             everywhere,
             has_unbounded,
             merged_surfaces,
+            bounds,
+            sizes,
             marking,
         })
     }
