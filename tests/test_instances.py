@@ -36,9 +36,9 @@ def test_a_picture_of_copies_is_that_of_the_objects_written_out() -> None:
     part = octray.box(2) - octray.sphere(1.25)
     offsets = [(x * 3.0, y * 3.0, 0.0) for x in range(4) for y in range(4)]
     copies, written = octray.Scene(), octray.Scene()
-    copies.add_instances(part, moves(*offsets), material="red")
+    copies.add_instances(part, moves(*offsets), material="#b83a3a")
     for offset in offsets:
-        written.add(part.translate(*offset), material="red")
+        written.add(part.translate(*offset), material="#b83a3a")
     for scene in (copies, written):
         scene.add(octray.half_space((0, 0, 1), -1), name="floor")
         scene.view_all()
