@@ -1,4 +1,4 @@
-"""Copies from Python: the page's example, pictures as of written-out copies, and what is refused."""
+"""Copies from Python: the page's example, pictures as if written out, and what is refused."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from examples import run_python
 if TYPE_CHECKING:
     import numpy.typing as npt
 
-CORNERS = [[0.0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]]
+CORNERS = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]
 SIDES = [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]]
 
 
@@ -53,12 +53,14 @@ def test_a_picture_of_copies_is_that_of_the_objects_written_out() -> None:
 def test_meshes_and_lists_are_copied(solid: bool | None) -> None:
     mesh = (CORNERS, SIDES)
     ball = octray.sphere(0.5).translate(z=3)
-    for what in (mesh, list(mesh), [mesh], [mesh, ball], [ball, mesh]):
+    everything: list[Any] = [mesh, list(mesh), [mesh], [mesh, ball], [ball, mesh]]
+    for what in everything:
         scene = octray.Scene()
         scene.add_instances(what, moves((0, 0, 0), (5, 0, 0))[:, :3], solid=solid)
         hits = scene.cast_rays([[5.1, 0.1, -4, 0, 0, 1], [0.1, 0.1, 2, 0, 0, 1]])
         assert hits.t[0] == 4
-        assert hits.instance_id.tolist() == [1, 0 if isinstance(what, list) and ball in what else -1]
+        met = 0 if any(part is ball for part in what) else -1
+        assert hits.instance_id.tolist() == [1, met]
         inside = scene.compute_occupancy([[5.1, 0.1, 0.1]])
         assert inside.tolist() == [solid is True]
 

@@ -1,10 +1,10 @@
 """Measure instances: a forest of copies of a solid or of a mesh, against trees written out.
 
-Three forests of each kind, which cover squares of the ground equally densely: many copies, few copies,
-and the few written out as objects. The same rays go through all of them chunk by chunk in turn, in
-one process; rates are medians over the chunks. Building and memory are measured in a process for
-each forest, memory as what the process has more than after importing. Results as a Markdown table, or
-with ``--json`` as JSON.
+Three forests of each kind, which cover squares of the ground equally densely: many copies, few
+copies, and the few written out as objects. The same rays go through all of them chunk by chunk in
+turn, in one process; rates are medians over the chunks. Building and memory are measured in a
+process for each forest, memory as what the process has more than after importing. Results as a
+Markdown table, or with ``--json`` as JSON.
 """
 
 from __future__ import annotations
@@ -21,6 +21,7 @@ from typing import Any
 
 import numpy as np
 import numpy.typing as npt
+
 import octray
 
 SPACING = 3.0
@@ -62,7 +63,9 @@ def solid_tree() -> octray.Solid:
 def mesh_tree() -> tuple[Floats, npt.NDArray[np.int64]]:
     """A bumpy crown of 336 triangles: ten thousand of them written out still fit."""
     rows, columns = 13, 14
-    u, v = np.meshgrid(np.linspace(0.02, np.pi - 0.02, rows), np.arange(columns) * 2 * np.pi / columns)
+    u, v = np.meshgrid(
+        np.linspace(0.02, np.pi - 0.02, rows), np.arange(columns) * 2 * np.pi / columns
+    )
     radius = 1 + 0.15 * np.sin(7 * u) * np.cos(9 * v)
     corners = np.stack(
         [np.sin(u) * np.cos(v), np.sin(u) * np.sin(v), 1.3 * np.cos(u)], axis=-1
@@ -114,13 +117,30 @@ def built(kind: str, count: int, *, written: bool, threads: int) -> dict[str, An
     }
 
 
+def in_own_process(kind: str, count: int, how: str, threads: int) -> dict[str, Any]:
+    """Do the same in a process that has done nothing else."""
+    command = [
+        sys.executable,
+        __file__,
+        "--threads",
+        str(threads),
+        "--built",
+        kind,
+        str(count),
+        how,
+    ]
+    done = subprocess.run(command, check=True, capture_output=True, text=True)
+    result: dict[str, Any] = json.loads(done.stdout)
+    return result
+
+
 def rays(kind: str, count: int, side: float, rng: np.random.Generator) -> Floats:
     """Give rays within the middle of a forest of this side: coherent from a camera, or any."""
     middle = np.array([side / 2, side / 2, 0.0])
     if kind == "camera":
         width = math.isqrt(count)
         x, y = np.meshgrid(np.linspace(-1, 1, width), np.linspace(-1, 1, width))
-        eye = middle + [-40, -40, 30] + rng.uniform(-2, 2, 3)
+        eye = middle + rng.uniform(-2, 2, 3) + np.array([-40, -40, 30])
         target = middle + np.stack([x * 15, y * 15, np.zeros_like(x)], axis=-1).reshape(-1, 3)
         return np.concatenate([np.broadcast_to(eye, target.shape), target - eye], axis=1)
     origin = middle + rng.uniform([-30, -30, 0], [30, 30, 4], (count, 3))
@@ -171,14 +191,7 @@ def main() -> None:
     report: dict[str, Any] = {"building": {}, "rays": {}}
     for kind in ("solid", "mesh"):
         report["building"][kind] = [
-            json.loads(
-                subprocess.run(
-                    [sys.executable, __file__, "--threads", str(args.threads), "--built", kind, str(n), how],
-                    check=True,
-                    capture_output=True,
-                    text=True,
-                ).stdout
-            )
+            in_own_process(kind, n, how, args.threads)
             for n, how in ((args.many, "copies"), (args.few, "copies"), (args.few, "written"))
         ]
         report["rays"][kind] = rates(kind, args.many, args.few, args.chunks, args.threads)
