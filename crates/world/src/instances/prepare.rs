@@ -104,6 +104,7 @@ impl Instances {
             // Taking a line into a prototype costs more than a node of boxes.
             leaf_size: 1,
             memory_limit: left,
+            ..*config
         };
         WideTree::build(&boxes, &config)
             .map_err(|error| match error {
