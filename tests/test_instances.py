@@ -32,13 +32,18 @@ def test_the_page_says_what_its_example_prints() -> None:
         assert printed == claim
 
 
-def test_a_picture_of_copies_is_that_of_the_objects_written_out() -> None:
+@pytest.mark.parametrize("spacing", [1.5, 3.0])
+@pytest.mark.parametrize("look", ["#b83a3a", octray.Material.glass(absorption=0.3)])
+def test_a_picture_of_copies_is_that_of_the_objects_written_out(
+    look: str | octray.Material, spacing: float
+) -> None:
     part = octray.box(2) - octray.sphere(1.25)
-    offsets = [(x * 3.0, y * 3.0, 0.0) for x in range(4) for y in range(4)]
+    # No two faces in one plane; the nearer ones overlap.
+    offsets = [(x * spacing, y * spacing, 0.13 * x + 0.29 * y) for x in range(4) for y in range(4)]
     copies, written = octray.Scene(), octray.Scene()
-    copies.add_instances(part, moves(*offsets), material="#b83a3a")
+    copies.add_instances(part, moves(*offsets), material=look)
     for offset in offsets:
-        written.add(part.translate(*offset), material="#b83a3a")
+        written.add(part.translate(*offset), material=look)
     for scene in (copies, written):
         scene.add(octray.half_space((0, 0, 1), -1), name="floor")
         scene.view_all()
