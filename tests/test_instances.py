@@ -47,10 +47,11 @@ def test_a_picture_of_copies_is_that_of_the_objects_written_out(
     for scene in (copies, written):
         scene.add(octray.half_space((0, 0, 1), -1), name="floor")
         scene.view_all()
-    pictures = [scene.render(size=(80, 60)).to_numpy() for scene in (copies, written)]
+    size, depth = (48, 36), 4
+    pictures = [scene.render(size=size, max_depth=depth).to_numpy() for scene in (copies, written)]
     apart = abs(pictures[0].astype(int) - pictures[1].astype(int))
     assert (apart > 1).mean() < 1e-3
-    brute = copies.render(size=(80, 60), accel="brute").to_numpy()
+    brute = copies.render(size=size, max_depth=depth, accel="brute").to_numpy()
     np.testing.assert_array_equal(pictures[0], brute)
 
 
