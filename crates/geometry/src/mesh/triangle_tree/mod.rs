@@ -2,6 +2,7 @@
 
 mod cells;
 mod membership;
+mod occupied;
 mod search;
 mod volumes;
 
