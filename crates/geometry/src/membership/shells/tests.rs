@@ -1,5 +1,6 @@
 //! No cube that the surface meets is missing, and few are that it does not.
 
+mod many_sides;
 mod marked_cells;
 mod points;
 mod specimens;
