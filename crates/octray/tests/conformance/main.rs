@@ -3,8 +3,8 @@
 //! By default small scenes (up to 2,000 primitives, and not much work) are rendered by every method; the others
 //! are dealt a selection of combinations that together has every pair, large scenes with smaller pictures;
 //! large meshes are asked by 2,000 rays.
-//! `OCTRAY_CONFORMANCE=full` (what `make conformance` sets) takes the full product everywhere, and the full
-//! size but for scenes of more than 5,000 solids;
+//! `OCTRAY_CONFORMANCE=full` (what `make conformance` sets) takes the full product everywhere, with more cells
+//! and larger pictures, but for scenes of more than 5,000 solids;
 //! `OCTRAY_CONFORMANCE_SCENE` takes only the scenes whose name contains its value.
 
 mod combination;
@@ -24,8 +24,10 @@ use scenes::{Collection, Specimen};
 
 /// Scenes of more primitives are not small.
 const SMALL: usize = 2_000;
-/// What cells may take by default, in bytes.
+/// What cells may take, in bytes: building is most of the work, and few cells are as wrong as many.
 const MEMORY_LIMIT: u64 = 512 << 10;
+/// The same where the full product is asked for.
+const FULL_MEMORY_LIMIT: u64 = 16 << 20;
 /// Nor are those of which brute force, for 16 x 12 pixels, makes more intersection tests.
 const LITTLE_WORK: u64 = 20_000;
 /// Of solids that overlap a ray in their thousands brute force asks each again at every change, which takes as
@@ -63,7 +65,8 @@ impl Class {
 
     const fn questions(self, full: bool) -> Questions {
         let (picture, rays) = match (self, full) {
-            (Self::Small, _) | (Self::Large, true) => (Some((64, 48)), 64),
+            (Self::Small, _) => (Some((64, 48)), 64),
+            (Self::Large, true) => (Some((32, 24)), 64),
             (Self::Large, false) | (Self::Vast, _) => (Some(PREVIEW), 64),
             (Self::Mesh, _) => (None, 2_000),
         };
@@ -149,12 +152,16 @@ fn every_method_shows_what_brute_force_shows() {
         .map(|(_, c)| AtomicUsize::new(c.len()))
         .collect();
     let spent: Vec<AtomicUsize> = work.iter().map(|_| AtomicUsize::new(0)).collect();
-    let done = AtomicUsize::new(0);
+    let (done, worlds) = (AtomicUsize::new(0), AtomicUsize::new(0));
     let look = |&(i, combination): &(usize, Combination)| {
         let start = Instant::now();
         let found = work[i].0.difference(&combination);
         let took = usize::try_from(start.elapsed().as_millis()).unwrap_or(usize::MAX);
         spent[i].fetch_add(took, Ordering::Relaxed);
+        let made = worlds.fetch_add(1, Ordering::Relaxed) + 1;
+        if made.is_multiple_of(1000) {
+            eprintln!("{made} of {} worlds", jobs.len());
+        }
         if left[i].fetch_sub(1, Ordering::Relaxed) == 1 {
             let done = done.fetch_add(1, Ordering::Relaxed) + 1;
             let (name, all) = (&work[i].0.specimen.name, work.len());
@@ -213,10 +220,12 @@ fn every_method_shows_what_brute_force_shows() {
 impl Subject {
     fn difference(&self, combination: &Combination) -> Option<String> {
         let mut config = combination.config();
-        if !self.full {
-            // Building is most of the work, and few cells are as wrong as many.
-            config.criteria.memory_limit = config.criteria.memory_limit.min(MEMORY_LIMIT);
-        }
+        let limit = if self.full {
+            FULL_MEMORY_LIMIT
+        } else {
+            MEMORY_LIMIT
+        };
+        config.criteria.memory_limit = config.criteria.memory_limit.min(limit);
         let evidence = Evidence::of(&self.specimen, &config, self.questions);
         let difference = evidence.difference(&self.brute)?;
         Some(format!(
