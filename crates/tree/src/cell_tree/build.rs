@@ -44,7 +44,7 @@ pub trait Subdivide: Sync {
     }
 
     /// The share of the cell's volume that its objects occupy, for [`Criteria::max_share`]; see
-    /// [`super::filled_share`]. Things without a volume occupy none.
+    /// [`super::filled_share`]. What is not known counts for none.
     fn share(&self, _content: &Self::Content, _cell: &Aabb) -> f64 {
         0.0
     }
