@@ -92,7 +92,7 @@ fn object<'py>(py: Python<'py>, scene: &Scene, object: &Object) -> PyResult<Boun
     let parts = Parts::of(&object.shape);
     let bounds = object.shape.bounds();
     let dict = PyDict::new(py);
-    dict.set_item("name", &object.name)?;
+    dict.set_item("name", &*object.name)?;
     let kind = match object.shape {
         Shape::Solid(_) => "solid",
         Shape::Sheet(_) => "sheet",

@@ -36,8 +36,8 @@ impl Scene {
         common: &Common<'_, '_>,
     ) -> u32 {
         let name = match common.name.unwrap_or(name) {
-            "" => format!("object {}", self.so_far().objects().len()),
-            name => name.to_owned(),
+            "" => format!("object {}", self.so_far().objects().len()).into(),
+            name => name.into(),
         };
         let object = Object {
             name,

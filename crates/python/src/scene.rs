@@ -228,7 +228,7 @@ impl Scene {
     #[getter]
     fn names(&self) -> Vec<&str> {
         let objects = self.builder.so_far().objects();
-        objects.iter().map(|o| o.name.as_str()).collect()
+        objects.iter().map(|o| &*o.name).collect()
     }
 
     /// The names of the materials; a material's id is an index into it.

@@ -238,7 +238,7 @@ impl SceneBuilder {
         for object in &scene.objects {
             // The other checks walk the tree.
             if let Err(error) = check_size(&object.shape) {
-                let object = object.name.clone();
+                let object = object.name.to_string();
                 errors.push(SceneError::BadSolid { object, error });
             } else {
                 check_materials(object, scene.materials.len(), &mut errors);
@@ -284,7 +284,7 @@ fn check_materials(object: &Object, count: usize, errors: &mut Vec<SceneError>) 
     let mut check = |id: MaterialId| {
         if id.0 as usize >= count {
             errors.push(SceneError::UnknownMaterial {
-                object: object.name.clone(),
+                object: object.name.to_string(),
                 material: id.0,
                 count,
             });

@@ -1,3 +1,5 @@
+use std::sync::Arc;
+
 use octray_geometry::{MaterialId, Sheet, Solid};
 use octray_math::Aabb;
 
@@ -28,8 +30,8 @@ impl Shape {
 /// A thing in the scene.
 #[derive(Clone, Debug)]
 pub struct Object {
-    /// For messages, listings and queries; need not be unique.
-    pub name: String,
+    /// For messages, listings and queries; need not be unique. Shared by those that have the same.
+    pub name: Arc<str>,
     /// Geometry in world coordinates.
     pub shape: Shape,
     /// For every face that has no material of its own, and for the inside.
@@ -43,17 +45,17 @@ pub struct Object {
 impl Object {
     /// A solid with the usual settings.
     #[must_use]
-    pub fn solid(name: impl Into<String>, solid: Solid, material: MaterialId) -> Self {
+    pub fn solid(name: impl Into<Arc<str>>, solid: Solid, material: MaterialId) -> Self {
         Self::new(name, Shape::Solid(solid), material)
     }
 
     /// A sheet with the usual settings.
     #[must_use]
-    pub fn sheet(name: impl Into<String>, sheet: Sheet, material: MaterialId) -> Self {
+    pub fn sheet(name: impl Into<Arc<str>>, sheet: Sheet, material: MaterialId) -> Self {
         Self::new(name, Shape::Sheet(sheet), material)
     }
 
-    fn new(name: impl Into<String>, shape: Shape, material: MaterialId) -> Self {
+    fn new(name: impl Into<Arc<str>>, shape: Shape, material: MaterialId) -> Self {
         Self {
             name: name.into(),
             shape,

@@ -126,20 +126,6 @@ impl LocalRay {
     }
 }
 
-impl LocalBox {
-    pub(super) fn union(&self, other: &Self) -> Self {
-        Self {
-            min: std::array::from_fn(|i| self.min[i].min(other.min[i])),
-            max: std::array::from_fn(|i| self.max[i].max(other.max[i])),
-        }
-    }
-
-    pub(super) fn half_area(&self) -> f32 {
-        let [x, y, z] = std::array::from_fn(|i| self.max[i] - self.min[i]);
-        x * y + y * z + z * x
-    }
-}
-
 /// `floor(log2 x)` for finite `x > 0`.
 #[inline]
 fn binary_exponent(x: f64) -> i32 {

@@ -1,9 +1,10 @@
 //! Eight boxes at a time: octree topology with tight bounds.
 //!
 //! The tree is generic over what it holds: it sees a box per item, and names items by their index.
-//! Cells give the splitting planes and the order, boxes do the culling: centres are sorted in
-//! Morton order, cells are halved where they hold items, and nodes of eight are filled with the
-//! parts of largest surface area first. Every item stands in exactly one leaf.
+//! Boxes do the culling. Items are halved again and again, in Morton order at the planes of an
+//! octree's cells ([`Quality::Fast`]) or at the planes where rays are expected to pay least
+//! ([`Quality::Full`]); then the nodes of eight are made of the halves that cost least. Every item
+//! stands in exactly one leaf.
 //!
 //! Bounds are kept in `f32`, relative to the tree's centre, scaled by a power of two to `[-1, 1]`
 //! and rounded outwards. They only rule out; the visitor decides in `f64`. So a search gives the
@@ -12,21 +13,29 @@
 //! corner of the tree's bounds relative to the ray's origin. (Bounds of items whose parameters are
 //! less accurate must be inflated before the tree is built.)
 
-mod binary;
-mod collapse;
+mod build;
+mod cost;
 mod frame;
+mod morton;
+mod reference;
 mod region;
+mod split;
+mod subtree;
 #[cfg(test)]
 mod tests;
 mod walk;
+
+use std::sync::atomic::AtomicU64;
 
 use bytemuck::{Pod, Zeroable};
 use octray_kernels::{Boxes8, Lanes};
 use octray_math::Aabb;
 use thiserror::Error;
 
-use binary::{Binary, Key, Source, Subtree};
 use frame::Frame;
+use reference::{PaddedBox, Reference};
+use split::Piece;
+use subtree::Budget;
 
 pub use walk::WalkCost;
 
@@ -35,18 +44,32 @@ const MAX_DEPTH: u32 = 73;
 /// The most items a leaf may hold.
 const LARGEST_LEAF: u32 = 8;
 
+/// How much time is spent on a tree.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Quality {
+    /// Soon ready: items are divided along the cells of an octree, in Morton order.
+    Fast,
+    /// Quick to search: items are divided where rays are expected to pay least.
+    #[default]
+    Full,
+}
+
 /// How to build.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct WideTreeConfig {
+    /// How much time is spent.
+    pub quality: Quality,
     /// The most items in a leaf, 1 to 8 (taken as the nearest of these).
     pub leaf_size: u32,
-    /// Bytes that the tree and its construction may take, the caller's boxes aside.
+    /// Bytes that the tree and its construction may take, the caller's boxes and about 2 MB for
+    /// each thread aside.
     pub memory_limit: u64,
 }
 
 impl Default for WideTreeConfig {
     fn default() -> Self {
         Self {
+            quality: Quality::default(),
             leaf_size: 4,
             memory_limit: 8 << 30,
         }
@@ -62,12 +85,14 @@ pub enum WideTreeError {
     /// Links have 28 bits for an item.
     #[error("{0} items; a tree holds at most 2^28")]
     TooMany(usize),
-    /// Known before anything is allocated.
-    #[error("a tree over {items} items may take {needed} bytes, more than the limit of {limit}")]
+    /// Known before the memory is taken.
+    #[error(
+        "a tree over {items} items takes at least {needed} bytes, more than the limit of {limit}"
+    )]
     Memory {
         /// How many items.
         items: usize,
-        /// Upper bound of the bytes needed.
+        /// Bytes needed, or a lower bound.
         needed: u64,
         /// Bytes allowed.
         limit: u64,
@@ -109,12 +134,12 @@ mod link {
         Some(first..first + (word >> COUNT_SHIFT & 7) as usize + 1)
     }
 
-    /// A link to a node whose array was appended to another that had `base` nodes.
-    pub(super) const fn rebased(word: u32, base: usize) -> u32 {
+    /// A link into arrays that were appended to others of so many nodes and items.
+    pub(super) const fn rebased(word: u32, nodes: usize, items: usize) -> u32 {
         if word & LEAF == 0 {
-            word + base as u32
+            word + nodes as u32
         } else {
-            word
+            word + items as u32
         }
     }
 }
@@ -160,15 +185,18 @@ impl WideTree {
         if bounds.len() > link::MAX_ITEMS {
             return Err(WideTreeError::TooMany(bounds.len()));
         }
-        let leaf_size = config.leaf_size.clamp(1, LARGEST_LEAF);
-        let needed = Self::memory_bound(bounds.len(), leaf_size);
-        if needed > config.memory_limit {
-            return Err(WideTreeError::Memory {
-                items: bounds.len(),
-                needed,
-                limit: config.memory_limit,
-            });
-        }
+        let references_bytes = (bounds.len() * size_of::<Reference>()) as u64;
+        let sorting = match config.quality {
+            Quality::Fast => morton::bytes(bounds.len()),
+            Quality::Full => 0,
+        };
+        let lacking = |needed: u64| WideTreeError::Memory {
+            items: bounds.len(),
+            needed,
+            limit: config.memory_limit,
+        };
+        let available = config.memory_limit.checked_sub(references_bytes + sorting);
+        let available = available.ok_or_else(|| lacking(references_bytes + sorting))?;
         let whole = bounds
             .iter()
             .filter(|b| !b.is_empty())
@@ -184,15 +212,33 @@ impl WideTree {
         if whole.is_empty() {
             return Ok(tree);
         }
-        let source = Source {
-            bounds,
-            frame: tree.frame,
-            leaf_size,
+        let mut references: Vec<Reference> = bounds
+            .iter()
+            .enumerate()
+            .filter(|(_, b)| !b.is_empty())
+            .map(|(item, b)| Reference::new(PaddedBox::outward(&tree.frame, b), item as u32))
+            .collect();
+        let codes = match config.quality {
+            Quality::Fast => morton::sort(&mut references),
+            Quality::Full => Vec::new(),
         };
-        let indices = (0..bounds.len() as u32).filter(|&i| !bounds[i as usize].is_empty());
-        let binary = Binary::build(indices, &source);
-        (tree.nodes, tree.stats.depth) = collapse::collapse(&binary, leaf_size);
-        tree.items = binary.keys.iter().map(|key| key.item).collect();
+        let piece = Piece::new(&mut references, &codes);
+        let budget = Budget {
+            leaf_size: config.leaf_size.clamp(1, LARGEST_LEAF),
+            // There is a second copy of nodes and items at the end, but no references any more.
+            bytes: available.min(config.memory_limit / 2),
+            taken: AtomicU64::new(0),
+        };
+        let root = build::divide(piece, &budget);
+        drop((references, codes));
+        // A lone leaf needs a node, too.
+        let size = root.bytes() + size_of::<WideNode>() as u64;
+        if size > budget.bytes {
+            return Err(lacking((2 * size).max(references_bytes + sorting + size)));
+        }
+        let built = build::collect(root);
+        (tree.nodes, tree.items) = (built.nodes, built.items);
+        tree.stats.depth = built.depth;
         let links = tree.nodes.iter().flat_map(|node| {
             let used = node.boxes.planes[0].map(|x| x < f32::INFINITY);
             node.links.into_iter().zip(used)
@@ -204,19 +250,6 @@ impl WideTree {
         let [nodes, items] = tree.bytes();
         tree.stats.bytes = (nodes.len() + items.len()) as u64;
         Ok(tree)
-    }
-
-    /// The most bytes that building takes at any time.
-    ///
-    /// A node with a free slot has leaves only, as has any last node of a branch: such nodes hold
-    /// more than `leaf_size` items each. All others have eight children, so each adds at least
-    /// seven to the number of branches, and every branch ends in an item of its own. Nodes are
-    /// counted twice because they are copied once.
-    fn memory_bound(items: usize, leaf_size: u32) -> u64 {
-        let n = items as u64;
-        let nodes = n / (u64::from(leaf_size) + 1) + n / 7 + 2;
-        let binary = size_of::<Key>() + size_of::<[Subtree; 2]>() + size_of::<u32>();
-        n * binary as u64 + 2 * nodes * size_of::<WideNode>() as u64
     }
 
     /// A box around all items.

@@ -127,8 +127,20 @@ fn aimed(boxes: &[Aabb], whole: &Aabb, r: &mut Random) -> Ray {
     )
 }
 
-fn tree(boxes: &[Aabb]) -> WideTree {
-    WideTree::build(boxes, &WideTreeConfig::default()).unwrap()
+const QUALITIES: [Quality; 2] = [Quality::Fast, Quality::Full];
+
+/// Every kind of boxes with every quality.
+fn cases() -> impl Iterator<Item = (&'static str, Vec<Aabb>, Quality)> {
+    let all = zoo().into_iter();
+    all.flat_map(|(name, boxes)| QUALITIES.map(|quality| (name, boxes.clone(), quality)))
+}
+
+fn tree(boxes: &[Aabb], quality: Quality) -> WideTree {
+    let config = WideTreeConfig {
+        quality,
+        ..WideTreeConfig::default()
+    };
+    WideTree::build(boxes, &config).unwrap()
 }
 
 /// Where the line enters the box, as `f64` has it.
@@ -153,8 +165,12 @@ fn span(r: &mut Random, ray: &Ray, whole: &Aabb) -> Interval {
 #[test]
 fn every_item_stands_in_one_leaf_and_the_depth_is_bounded() {
     for (name, boxes) in zoo() {
-        for leaf_size in [1, 4, 8] {
+        for (leaf_size, quality) in [1, 4, 8]
+            .into_iter()
+            .flat_map(|n| QUALITIES.map(|q| (n, q)))
+        {
             let config = WideTreeConfig {
+                quality,
                 leaf_size,
                 ..WideTreeConfig::default()
             };
@@ -192,8 +208,8 @@ fn every_item_stands_in_one_leaf_and_the_depth_is_bounded() {
 #[test]
 fn no_box_on_the_line_is_left_out_and_few_others_are_shown() {
     let (mut met, mut shown) = (0, 0);
-    for (seed, (name, boxes)) in zoo().into_iter().enumerate() {
-        let tree = tree(&boxes);
+    for (seed, (name, boxes, quality)) in cases().enumerate() {
+        let tree = tree(&boxes, quality);
         let mut r = Random(100 + seed as u64, 0);
         for _ in 0..400 {
             let ray = aimed(&boxes, tree.bounds(), &mut r);
@@ -219,8 +235,8 @@ fn no_box_on_the_line_is_left_out_and_few_others_are_shown() {
 #[test]
 fn the_first_box_is_the_one_that_trying_all_of_them_finds() {
     let mut found = 0;
-    for (seed, (name, boxes)) in zoo().into_iter().enumerate() {
-        let vector = tree(&boxes);
+    for (seed, (name, boxes, quality)) in cases().enumerate() {
+        let vector = tree(&boxes, quality);
         let scalar = vector.clone().with_lanes(Lanes::Scalar);
         let mut r = Random(200 + seed as u64, 0);
         for _ in 0..1500 {
@@ -265,8 +281,8 @@ fn the_first_box_is_the_one_that_trying_all_of_them_finds() {
 #[test]
 fn no_box_in_a_region_is_left_out() {
     let mut overlapping = 0;
-    for (seed, (name, boxes)) in zoo().into_iter().enumerate() {
-        let tree = tree(&boxes);
+    for (seed, (name, boxes, quality)) in cases().enumerate() {
+        let tree = tree(&boxes, quality);
         let mut r = Random(300 + seed as u64, 0);
         let size = tree.bounds().half_size().max_element();
         for _ in 0..100 {
@@ -305,18 +321,20 @@ fn the_same_bytes_for_any_number_of_threads() {
         })
         .collect();
     boxes.extend((0..9_000).map(|_| around(r.point(1e-9), r.point(1e-12))));
-    let build = |threads: usize| {
+    let build = |threads: usize, quality| {
         let pool = rayon::ThreadPoolBuilder::new()
             .num_threads(threads)
             .build()
             .unwrap();
-        pool.install(|| tree(&boxes))
+        pool.install(|| tree(&boxes, quality))
     };
-    let one = build(1);
-    for threads in [2, 4] {
-        let other = build(threads);
-        assert!(one.bytes() == other.bytes());
-        assert_eq!(one.stats, other.stats);
+    for quality in QUALITIES {
+        let one = build(1, quality);
+        for threads in [2, 4] {
+            let other = build(threads, quality);
+            assert!(one.bytes() == other.bytes());
+            assert_eq!(one.stats, other.stats);
+        }
     }
 }
 
@@ -325,26 +343,28 @@ fn a_cluster_far_smaller_than_a_cell_is_still_divided() {
     let mut r = Random(4, 0);
     let mut boxes = vec![around(DVec3::splat(1e9), DVec3::ONE)];
     boxes.extend((0..5000).map(|_| around(r.point(1e-3), DVec3::splat(1e-6))));
-    let tree = tree(&boxes);
-    let mut cost = WalkCost::default();
-    // In f32 all of it is one point, but order and depth must not degenerate.
-    tree.all(
-        &Ray::new(-DVec3::X, DVec3::X),
-        Interval::ALL,
-        &mut cost,
-        |_| (),
-    );
-    assert!(
-        tree.stats.depth < 12 && tree.stats.nodes < 2500,
-        "{:?}",
-        tree.stats
-    );
+    for quality in QUALITIES {
+        let tree = tree(&boxes, quality);
+        let mut cost = WalkCost::default();
+        // In f32 all of it is one point, but order and depth must not degenerate.
+        tree.all(
+            &Ray::new(-DVec3::X, DVec3::X),
+            Interval::ALL,
+            &mut cost,
+            |_| (),
+        );
+        assert!(
+            tree.stats.depth < 12 && tree.stats.nodes < 2500,
+            "{:?}",
+            tree.stats
+        );
+    }
 }
 
 #[test]
 fn broken_rays_and_empty_spans_meet_nothing() {
     let boxes = [around(DVec3::ZERO, DVec3::ONE)];
-    let tree = tree(&boxes);
+    let tree = tree(&boxes, Quality::Full);
     let mut cost = WalkCost::default();
     let bad = [DVec3::ZERO, DVec3::NAN, DVec3::INFINITY];
     for direction in bad {
@@ -386,13 +406,27 @@ fn what_cannot_be_built_is_said() {
         error,
         WideTreeError::Memory { items: 100, limit: 1000, needed } if needed > 1000
     ));
-    for (name, boxes) in zoo() {
-        let stats = tree(&boxes).stats;
-        for leaf_size in [1, 4] {
-            assert!(
-                stats.bytes <= WideTree::memory_bound(boxes.len(), leaf_size),
-                "{name}"
-            );
-        }
+    // The limit decides at the byte, and in the same way however much is lacking.
+    for (name, boxes, quality) in cases() {
+        let build = |memory_limit: u64| {
+            let config = WideTreeConfig {
+                quality,
+                memory_limit,
+                ..WideTreeConfig::default()
+            };
+            WideTree::build(&boxes, &config)
+        };
+        let (mut limit, mut refusals) = (0, 0);
+        let tree = loop {
+            match build(limit) {
+                Ok(tree) => break tree,
+                Err(WideTreeError::Memory { needed, .. }) if needed > limit => limit = needed,
+                Err(other) => panic!("{name}: {other}"),
+            }
+            refusals += 1;
+            assert!(refusals <= 2, "{name}");
+        };
+        assert!(tree.stats.bytes <= limit, "{name}");
+        assert!(limit == 0 || build(limit - 1).is_err(), "{name}");
     }
 }
