@@ -292,6 +292,8 @@ class Hits:
     @property
     def object_id(self) -> _Integers: ...
     @property
+    def instance_id(self) -> _Integers: ...
+    @property
     def face_id(self) -> _Integers: ...
     @property
     def normal(self) -> _Floats: ...
@@ -320,6 +322,8 @@ class Intersections:
     def lengths(self) -> _Floats: ...
     @property
     def object_id(self) -> _Integers: ...
+    @property
+    def instance_id(self) -> _Integers: ...
     @property
     def material_id(self) -> _Integers: ...
     @property
@@ -374,6 +378,17 @@ class Scene:
     def add_mesh(
         self,
         mesh: _Mesh,
+        *,
+        name: str | None = None,
+        material: Material | _Color | None = None,
+        solid: bool | MeshRule | None = None,
+        priority: int = 0,
+        shadows: bool = True,
+    ) -> int: ...
+    def add_instances(
+        self,
+        what: Solid | _Mesh | Sequence[Solid | _Mesh],
+        transforms: npt.ArrayLike,
         *,
         name: str | None = None,
         material: Material | _Color | None = None,

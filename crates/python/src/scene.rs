@@ -18,6 +18,7 @@ use crate::cells::{self, Cells};
 use crate::convert::{Triple, vector};
 use crate::diagnostics::{Diagnostic, invalid_scene};
 use crate::image::Image;
+use crate::instances;
 use crate::light::Light;
 use crate::mesh;
 use crate::objects::Common;
@@ -68,6 +69,11 @@ impl Scene {
 
     pub(crate) fn own_camera(&self) -> Option<scene::Camera> {
         self.builder.so_far().camera().copied()
+    }
+
+    /// Keeps what an importer said.
+    pub(crate) fn said(&mut self, diagnostics: Vec<Diagnostic>) {
+        self.diagnostics.extend(diagnostics);
     }
 
     pub(crate) const fn revision(&self) -> u64 {
@@ -176,6 +182,41 @@ impl Scene {
                 first.ok_or_else(|| PyValueError::new_err("the file has no mesh in it"))
             }
         }
+    }
+
+    /// Adds many copies of a solid, a mesh (as `add_mesh` takes it), or a list of solids and meshes,
+    /// one for each of the affine maps in an array of shape (N, 4, 4) or (N, 3, 4), by rows. Returns
+    /// the object's id; `Hits.instance_id` tells the copies apart.
+    ///
+    /// What is copied must be bounded. A copy takes about 130 bytes however large what is copied is.
+    /// Where solids overlap, a copy counts as an object would, of the size of its box; the later copy
+    /// before the earlier. `solid` fills meshes as in `add_mesh`. A ValueError says which transform
+    /// is not finite, flat or not affine.
+    #[pyo3(signature = (
+        what, transforms, *, name = None, material = None, solid = None, priority = 0, shadows = true
+    ))]
+    #[expect(clippy::too_many_arguments, reason = "most by keyword")]
+    fn add_instances(
+        &mut self,
+        what: &Bound<'_, PyAny>,
+        transforms: &Bound<'_, PyAny>,
+        name: Option<&str>,
+        material: Option<&Bound<'_, PyAny>>,
+        solid: Option<&Bound<'_, PyAny>>,
+        priority: i32,
+        shadows: bool,
+    ) -> PyResult<u32> {
+        let filled = solid.map(mesh::filling).transpose()?.flatten();
+        let common = Common {
+            name,
+            material,
+            priority,
+            shadows,
+        };
+        let id = self.wanted_material(material)?;
+        let given = material.map(|_| id);
+        let copies = instances::instances(self, what, transforms, filled, given)?;
+        Ok(self.add_shape(Shape::Instances(copies), "", id, &common))
     }
 
     /// Adds a light.

@@ -150,6 +150,13 @@ impl Scene {
             .fold(Aabb::EMPTY, Aabb::union)
     }
 
+    /// Whether any object is made of instances.
+    #[must_use]
+    pub fn has_instances(&self) -> bool {
+        let is = |object: &Object| matches!(object.shape, Shape::Instances(_));
+        self.objects.iter().any(is)
+    }
+
     /// The scene as a builder, to change it.
     #[must_use]
     pub fn into_builder(self) -> SceneBuilder {
@@ -219,6 +226,11 @@ impl SceneBuilder {
         &mut self.scene.settings
     }
 
+    /// The scene as it is: for parts that have been checked.
+    pub(crate) fn into_scene(self) -> Scene {
+        self.scene
+    }
+
     /// What has been collected so far, not validated: for importers that fill in defaults.
     #[must_use]
     pub const fn so_far(&self) -> &Scene {
@@ -276,7 +288,8 @@ fn check_size(shape: &Shape) -> Result<(), ShapeError> {
             solid.check_size()?;
             clip.check_size()
         }
-        Shape::Sheet(Sheet::Mesh { .. }) => Ok(()),
+        // The parts of a prototype have been checked.
+        Shape::Sheet(Sheet::Mesh { .. }) | Shape::Instances(_) => Ok(()),
     }
 }
 
@@ -291,17 +304,30 @@ fn check_materials(object: &Object, count: usize, errors: &mut Vec<SceneError>) 
         }
     };
     check(object.material);
-    let mut visit_mesh = |mesh: &octray_geometry::TriangleMesh| {
-        // The highest id is out of range if any is.
-        if let Some(&id) = mesh.materials().unwrap_or_default().iter().max() {
-            check(id);
-        }
-    };
     match &object.shape {
-        Shape::Sheet(Sheet::Mesh { mesh, .. }) => visit_mesh(mesh),
-        Shape::Sheet(Sheet::Shell { solid, .. }) | Shape::Solid(solid) => {
-            solid_materials(solid, &mut check);
+        Shape::Instances(instances) => {
+            let parts = instances.prototype().parts().objects();
+            parts
+                .iter()
+                .for_each(|p| face_materials(&p.shape, &mut check));
         }
+        shape => face_materials(shape, &mut check),
+    }
+}
+
+fn face_materials(shape: &Shape, check: &mut impl FnMut(MaterialId)) {
+    match shape {
+        Shape::Sheet(Sheet::Mesh { mesh, .. }) => {
+            // The highest id is out of range if any is.
+            if let Some(&id) = mesh.materials().unwrap_or_default().iter().max() {
+                check(id);
+            }
+        }
+        Shape::Sheet(Sheet::Shell { solid, .. }) | Shape::Solid(solid) => {
+            solid_materials(solid, check);
+        }
+        // Prototypes hold none.
+        Shape::Instances(_) => {}
     }
 }
 

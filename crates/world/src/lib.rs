@@ -10,6 +10,7 @@ mod cell_list;
 mod chords;
 mod faces;
 mod figures;
+mod instances;
 mod interact;
 mod line;
 mod method;

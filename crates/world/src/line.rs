@@ -9,6 +9,9 @@ use crate::{Departure, RayQuery};
 /// The bits of a positive number that say its power of two.
 const EXPONENT_BITS: u64 = 0x7ff0_0000_0000_0000;
 
+/// More than a few roundings.
+const LIMIT_ROUNDING: f64 = 1.0 / (1u64 << 49) as f64;
+
 /// Where the scene is: the coordinates it is worked on in, and its centre in them.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Place {
@@ -23,7 +26,7 @@ impl Place {
             let solids = match &object.shape {
                 Shape::Solid(solid) => [Some(solid), None],
                 Shape::Sheet(Sheet::Shell { solid, clip }) => [Some(solid), Some(clip)],
-                Shape::Sheet(Sheet::Mesh { .. }) => [None, None],
+                Shape::Sheet(Sheet::Mesh { .. }) | Shape::Instances(_) => [None, None],
             };
             let bounds = object.shape.bounds();
             let unbounded = !bounds.is_empty() && !bounds.is_bounded();
@@ -131,6 +134,40 @@ impl Line {
     pub(crate) const fn beyond(mut self, s: f64) -> Self {
         self.origin = s;
         self
+    }
+
+    /// The same line seen from a prototype's coordinates, where it is `ray` with the parameters of
+    /// this line.
+    pub(crate) fn seen_as(&self, ray: Ray, place: &Place, departure: Departure) -> Option<Self> {
+        let query = RayQuery {
+            ray,
+            t_max: self.end,
+            departure,
+        };
+        let mut line = Self::new(&query, place)?;
+        line.origin = line.inner(self.origin);
+        Some(line)
+    }
+
+    /// The parameter of the line that this one was seen from.
+    pub(crate) fn outer(&self, s: f64) -> f64 {
+        // There is one zero.
+        (s + self.shift) / self.scale + 0.0
+    }
+
+    /// The parameter on this line, given that on the line it was seen from.
+    pub(crate) fn inner(&self, s: f64) -> f64 {
+        s * self.scale - self.shift
+    }
+
+    /// A parameter not before any that is at most `s` on the line this one was seen from.
+    pub(crate) fn inner_limit(&self, s: f64) -> f64 {
+        let limit = self.inner(s);
+        if limit.is_finite() {
+            limit + ((s * self.scale).abs() + self.shift.abs() + limit.abs()) * LIMIT_ROUNDING
+        } else {
+            limit
+        }
     }
 
     /// The user's parameter. On a half-line it is 0 where that begins to count and never negative:

@@ -80,6 +80,15 @@ impl Hits {
         })
     }
 
+    /// Which copy of its object each ray met, from 0, int64; -1 for a miss and where the object is
+    /// not made of instances.
+    #[getter]
+    fn instance_id<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArrayDyn<i64>>> {
+        self.ids(py, |hit| {
+            self.world.instance(hit.instance).map(|(_, copy)| copy)
+        })
+    }
+
     /// Ids of the faces, unique in the scene, int64; -1 for a miss.
     #[getter]
     fn face_id<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArrayDyn<i64>>> {

@@ -22,7 +22,7 @@ pub(super) struct Candidate<'a> {
 }
 
 /// What merged surfaces and rounding move, many times over.
-pub(super) fn slack(frame: &SceneFrame) -> f64 {
+pub(crate) fn slack(frame: &SceneFrame) -> f64 {
     64.0 * (SURFACE_TOLERANCE * frame.size + PLACE_TOLERANCE * frame.largest())
 }
 
@@ -31,7 +31,7 @@ impl<'a> Candidate<'a> {
         let (boundary, clip) = match &object.shape {
             Shape::Solid(solid) => (solid, None),
             Shape::Sheet(Sheet::Shell { solid, clip }) => (solid, Some(clip)),
-            Shape::Sheet(Sheet::Mesh { .. }) => return None,
+            Shape::Sheet(Sheet::Mesh { .. }) | Shape::Instances(_) => return None,
         };
         // By the same transforms as the faces, so that rounding far from the origin moves both.
         let scene_from_world = frame.scene_from_world();
@@ -57,16 +57,18 @@ impl<'a> Candidate<'a> {
 
     /// Higher priority, then smaller, then later: what is inside something else is seen there.
     pub(super) fn rank(&self, other: &Self) -> Ordering {
-        let size = |c: &Self| {
-            if c.bounds.is_bounded() {
-                c.bounds.diagonal()
-            } else {
-                f64::INFINITY
-            }
-        };
         (other.object.priority.cmp(&self.object.priority))
-            .then(size(self).total_cmp(&size(other)))
+            .then(self.size().total_cmp(&other.size()))
             .then(other.id.cmp(&self.id))
+    }
+
+    /// How large it counts as where solids overlap.
+    pub(super) fn size(&self) -> f64 {
+        if self.bounds.is_bounded() {
+            self.bounds.diagonal()
+        } else {
+            f64::INFINITY
+        }
     }
 }
 

@@ -18,10 +18,11 @@ mod volumes;
 use octray_geometry::csg::Face;
 use octray_geometry::mesh::{MeshSolid, TriangleTree};
 use octray_geometry::surface::Surface;
-use octray_math::{Interval, Ray};
+use octray_math::{Aabb, Interval, Ray};
 use octray_scene::ObjectId;
 use octray_tree::{CellTree, Node, Partition};
 
+pub(crate) use candidates::slack;
 use leaf::LeafView;
 pub(crate) use leaf::Leaves;
 pub(crate) use roots::Scratch;
@@ -78,6 +79,10 @@ pub(crate) struct Solids {
     /// Whether any object has no end.
     has_unbounded: bool,
     merged_surfaces: usize,
+    /// A box around the bounded objects and what rounding moves.
+    bounds: Aabb,
+    /// For each object of the scene its size; empty where there are no copies to compare it with.
+    sizes: Vec<f64>,
     /// Where operands were marked.
     marking: Option<MarkingStats>,
 }
@@ -285,6 +290,16 @@ impl Solids {
         self.ranked[rank as usize].object
     }
 
+    /// A box around the bounded objects and what rounding moves, in the coordinates of the scene.
+    pub(crate) const fn bounds(&self) -> &Aabb {
+        &self.bounds
+    }
+
+    /// How large an object counts as where solids overlap.
+    pub(crate) fn size_of(&self, object: ObjectId) -> f64 {
+        self.sizes[object.0 as usize]
+    }
+
     pub(crate) fn priority_of(&self, rank: u32) -> i32 {
         self.ranked[rank as usize].priority
     }
@@ -320,6 +335,7 @@ impl Solids {
                 .filter_map(TriangleTree::tree_stats)
                 .map(|stats| stats.bytes)
                 .sum(),
+            instances: 0,
             building: cells.map_or(0, |stats| stats.peak_bytes),
         }
     }

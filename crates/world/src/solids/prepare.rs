@@ -62,6 +62,13 @@ impl Solids {
         } = expressions;
         candidates.sort_by(Candidate::rank);
         let ranked: Vec<Ranked> = candidates.iter().map(Ranked::new).collect();
+        let mut sizes = Vec::new();
+        if scene.has_instances() {
+            sizes.resize(scene.objects().len(), 0.0);
+            for candidate in &candidates {
+                sizes[candidate.id.0 as usize] = candidate.size();
+            }
+        }
         let mut rank_of = vec![u32::MAX; scene.objects().len()];
         for (rank, object) in ranked.iter().enumerate() {
             rank_of[object.object.0 as usize] = rank as u32;
@@ -167,6 +174,8 @@ impl Solids {
             everywhere,
             has_unbounded,
             merged_surfaces,
+            bounds,
+            sizes,
             marking,
         })
     }
@@ -208,7 +217,7 @@ fn mesh_surfaces(
         let solid = MeshSolid::new(&operand.mesh, &operand.scene_from_mesh, config);
         let solid = solid.map_err(|error| {
             let object = ranked[face_owner[literal as usize] as usize].object;
-            let object = scene.objects()[object.0 as usize].name.clone();
+            let object = scene.objects()[object.0 as usize].name.to_string();
             WorldError::Mesh { object, error }
         })?;
         let solid = solid.with_planes(operand.planes.clone());

@@ -80,6 +80,8 @@ pub(crate) struct Scratch {
     pub(crate) chords: ChordScratch,
     /// Chords that are only counted.
     pub(crate) counted: Vec<Chord>,
+    /// For each prototype of copies.
+    pub(crate) prototypes: Vec<Scratch>,
     mesh_roots: Vec<octray_geometry::mesh::MeshCrossing>,
 }
 

@@ -27,6 +27,8 @@ pub(crate) struct Interface {
     pub(crate) s: f64,
     /// Whose boundary is reported.
     pub(crate) face: FaceId,
+    /// Which copy's, 0 for none.
+    pub(crate) instance: u32,
     /// Whether the line enters the face's object.
     pub(crate) entering: bool,
     pub(crate) from: Region,
@@ -120,6 +122,7 @@ impl Change<'_> {
         Some(Interface {
             s: self.group[0].s,
             face: self.face(&view.objects[index])?,
+            instance: 0,
             entering: self.after[index],
             from,
             to,
