@@ -134,7 +134,8 @@ def memory(results: Results) -> str:
         for program in programs:
             peak = results.get(scene, results.threads[0], program, *PEAK)
             each = results.get(scene, results.threads[0], program, "bytes_per_shape")
-            row.append("" if peak is None else f"{peak / 2**20:.0f} MiB, {each or 0:.0f} B")
+            text = "" if peak is None else f"{peak / 2**20:.0f} MiB"
+            row.append(text if each is None else f"{text}, {each:.0f} B")
         rows.append(row)
     return table(["scene", "shapes", *programs], rows)
 

@@ -75,8 +75,8 @@ class OctrayPython(Octray):
     name = "octray, Python"
 
     def objection(self, scene: Scene) -> str | None:
-        """Only meshes come in binary files."""
-        if scene.spheres or scene.solids or not scene.meshes:
+        """Only meshes come in binary files. An empty picture tells what it costs by itself."""
+        if scene.counts.keys() - {"triangles"}:
             return "is for meshes in binary files"
         return None
 
