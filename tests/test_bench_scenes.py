@@ -196,7 +196,7 @@ def test_a_mesh_in_a_binary_file_makes_the_same_picture(tmp_path: Path) -> None:
         mitsuba.write(scene, file, tmp_path)
     path = tmp_path / "mesh70k.py"
     with path.open("w", encoding="ascii") as file:
-        script.write(scene, file, tmp_path)
+        script.write(scene, file)
     small = path.read_text(encoding="ascii").replace(str(scene.size), "(48, 48)")
     path.write_text(small, encoding="ascii")
     target = tmp_path / "binary.png"
