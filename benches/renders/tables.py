@@ -63,7 +63,10 @@ def seconds(value: float | None) -> str:
 
 def times(value: float | None) -> str:
     """How many times as fast octray is."""
-    return "" if value is None else f"**{value:.2g}x**" if value < 9.95 else f"**{value:.0f}x**"
+    if value is None:
+        return ""
+    text = f"{value:.2g}x" if value < 9.95 else f"{value:.0f}x"
+    return text if value < 1 else f"**{text}**"
 
 
 def table(heads: list[str], rows: list[list[str]]) -> str:
@@ -162,7 +165,7 @@ def scaling(results: Results) -> str:
     """From one thread to many."""
     rows = []
     for scene in results.names:
-        if scene == "sphere":
+        if scene == "sphere" or results.threads[-1] == 1:
             continue
         row = [scene]
         for program in ("octray", *PEERS):
@@ -176,25 +179,24 @@ def scaling(results: Results) -> str:
 
 
 def lost(results: Results) -> str:
-    """Everything in which some program is faster or smaller than octray."""
-    lines = []
+    """Everything in which some program is faster or smaller than octray, with the best of them."""
+    worst: dict[tuple[str, int, str], tuple[float, str]] = {}
+    words = {"trace_s": "tracing", "whole_s": "command", "peak_bytes": "memory"}
     for (scene, threads, program), entry in results.series.items():
         if results.scenes[scene]["empty"] == scene or program in OURS:
             continue
-        for what, word in (
-            ("trace_s", "tracing"),
-            ("whole_s", "command"),
-            ("peak_bytes", "memory"),
-        ):
+        for what, word in words.items():
             ratio = entry["ratio"][what]
             # On a stamp tracing takes less than a clock tells.
-            if ratio is not None and 0 < ratio < 1 and (scene, what) != ("sphere", "trace_s"):
-                lines.append((scene, threads, program, word, f"{1 / ratio:.3g}"))
+            if ratio is None or ratio >= 1 or ratio == 0 or (scene, what) == ("sphere", "trace_s"):
+                continue
+            place = scene, threads, word
+            worst[place] = min(worst.get(place, (1.0, "")), (ratio, program))
     rows = [
-        [scene, str(threads), f"{program}, {word}", f"{much}x"]
-        for scene, threads, program, word, much in lines
+        [scene, str(threads), word, f"{1 / ratio:.3g}x that of {program}"]
+        for (scene, threads, word), (ratio, program) in worst.items()
     ]
-    return table(["scene", "threads", "who and what", "octray takes"], rows)
+    return table(["scene", "threads", "what", "octray takes"], rows)
 
 
 def run(results: Results) -> str:
