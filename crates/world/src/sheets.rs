@@ -7,7 +7,7 @@ use octray_geometry::mesh::{
     Placement, SearchCost, SearchMemory, TrianglePoint, TriangleSearch, TriangleTree,
 };
 use octray_geometry::{FaceId, MaterialId, SceneFrame, Sheet, TriangleMesh};
-use octray_math::Interval;
+use octray_math::{DVec3, Interval};
 use octray_scene::{ObjectId, Scene, Shape};
 use octray_tree::WideTreeError;
 
@@ -181,6 +181,14 @@ impl Sheets {
                 })
             });
         counters.add_search(&cost);
+    }
+
+    /// The unit normal of a triangle, zero if it has no area.
+    pub(crate) fn normal(&self, face: FaceId) -> Option<DVec3> {
+        let triangle = self.triangle(face)?;
+        let part = self.part(triangle);
+        part.placement
+            .normal(&part.mesh, triangle - part.first_triangle)
     }
 
     /// Shading data of a triangle that the line crosses.

@@ -6,11 +6,12 @@ use octray_geometry::csg::{Constant, Face, Lowered, LoweredScene, MeshOperand};
 use octray_geometry::mesh::MeshSolid;
 use octray_math::Aabb;
 use octray_scene::Scene;
-use octray_tree::{Division, Encoding, WideTreeConfig};
+use octray_tree::{Criteria, Division, Encoding, WideTreeConfig};
 
 use super::candidates::{Candidate, Expressions, candidates};
 use super::cells::{Cells, Content};
 use super::divide::{Plan, check_list};
+use super::object_tree::ObjectTree;
 use super::operand_boxes::OperandBoxes;
 use super::volumes::Volumes;
 use super::{Leaves, MeshSurface, Ranked, Solids};
@@ -114,6 +115,11 @@ impl Solids {
             Method::Boxes => Some(Volumes::new(&object_bounds, false)),
             _ => None,
         };
+        // Unless someone wants cells.
+        let leaves_open = config.method == Method::Auto
+            && config.criteria == Criteria::default()
+            && list.is_none();
+        let small = leaves_open && meshes.is_empty() && ObjectTree::suits(&root, &object_bounds);
         let mut contents = Vec::new();
         let mut cells = None;
         let mut marking = None;
@@ -121,7 +127,7 @@ impl Solids {
         let mut whole = None;
         let operand_boxes =
             by_share.then(|| OperandBoxes::new(&operands, &face_owner, &object_bounds));
-        if let Some(division) = division.filter(|_| !bounds.is_empty()) {
+        if let Some(division) = division.filter(|_| !(small || bounds.is_empty())) {
             let restricting = Cells {
                 faces: &faces,
                 surfaces: &surfaces,
@@ -156,6 +162,13 @@ impl Solids {
         let outer = leaf_of(outer);
         let has_unbounded = object_bounds.iter().any(|b| !b.is_bounded());
         let leaves = Leaves::new(&contents);
+        let objects = match outer.filter(|_| small) {
+            Some(leaf) => {
+                let view = leaves.get(leaf);
+                Some(ObjectTree::build(&view, &object_bounds, &config.triangles)?)
+            }
+            None => None,
+        };
         let priorities_differ = ranked
             .windows(2)
             .any(|pair| pair[0].priority != pair[1].priority);
@@ -168,6 +181,7 @@ impl Solids {
             priorities_differ,
             leaves,
             cells,
+            objects,
             volumes,
             outer,
             whole,

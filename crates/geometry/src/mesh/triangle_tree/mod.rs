@@ -1,6 +1,7 @@
 //! Triangles where they stand, and those that a line crosses.
 
 mod cells;
+mod divide;
 mod membership;
 mod search;
 mod volumes;
@@ -13,6 +14,7 @@ use octray_tree::{Partition, WideTree, WideTreeError, WideTreeStats};
 
 use super::{TriangleHit, TriangleRay};
 use cells::TriangleCells;
+use divide::Triangles;
 pub use membership::TriangleMarks;
 pub use search::{SearchCost, SearchMemory, TriangleSearch};
 use volumes::ObjectVolumes;
@@ -62,8 +64,11 @@ impl TriangleTree {
         all.index = match *search {
             TriangleSearch::All => Index::All,
             TriangleSearch::Wide(config) => {
-                let bounds: Vec<Aabb> = (0..count).map(|i| all.bounds(i)).collect();
-                Index::Wide(WideTree::build(&bounds, &config)?)
+                let items = Triangles {
+                    positions: &all.positions,
+                    triangles: &all.triangles,
+                };
+                Index::Wide(WideTree::over(&items, &config)?)
             }
             TriangleSearch::Spheres | TriangleSearch::Boxes => {
                 let ends = objects.iter().skip(1).copied().chain([count]);
@@ -211,8 +216,9 @@ impl TriangleTree {
     /// Shows `visit` the triangles that the line crosses in `span` (ends included), until nothing
     /// better can come: `visit(triangle, hit, end)` returns the new end of the span, or `end`.
     ///
-    /// All triangles up to the final end are shown, those at the end itself too, each once and in no
-    /// particular order. `cost.walk.items` counts triangles tested.
+    /// All triangles up to the final end are shown, those at the end itself too, in no particular
+    /// order; one that stands in several leaves of the wide octree may be shown more than once.
+    /// `cost.walk.items` counts triangles tested.
     #[inline]
     pub fn closest(
         &self,
@@ -274,10 +280,23 @@ impl TriangleTree {
         cost: &mut SearchCost,
         mut visit: impl FnMut(u32, &TriangleHit),
     ) {
+        let once = self
+            .tree_stats()
+            .is_none_or(|tree| tree.references == tree.items);
+        let mut found: Vec<(u32, TriangleHit)> = Vec::new();
         self.closest(ray, span, memory, cost, |triangle, hit, end| {
-            visit(triangle, hit);
+            if once {
+                visit(triangle, hit);
+            } else {
+                found.push((triangle, *hit));
+            }
             end
         });
+        found.sort_unstable_by_key(|(triangle, _)| *triangle);
+        found.dedup_by_key(|(triangle, _)| *triangle);
+        for (triangle, hit) in &found {
+            visit(*triangle, hit);
+        }
     }
 
     /// Shows `test` the triangles that may lie on the line in `span`, each once; it returns the new
