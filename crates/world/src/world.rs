@@ -13,7 +13,7 @@ use thiserror::Error;
 
 use crate::instances::Instances;
 use crate::line::{Line, Place};
-use crate::sheets::{SheetHit, Sheets};
+use crate::sheets::Sheets;
 use crate::solids::{Interface, Scratch, Solids};
 use crate::{
     CellList, CellListError, CellsOf, Counters, Departure, Hit, MarkingStats, MemoryStats, Method,
@@ -327,20 +327,10 @@ impl World {
                 }
                 limit_of(&best)
             });
-        let mut sheet: Option<SheetHit> = None;
-        self.sheets.visit_line(
-            line,
-            limit_of(&best),
-            &mut scratch.triangles,
-            counters,
-            |found| {
-                let known = sheet.map_or(best, |hit| Some(Interface::of_sheet(&hit)));
-                if nearer(found.s, found.face, &known) {
-                    sheet = Some(*found);
-                }
-                sheet.map_or(limit_of(&best), |hit| hit.s)
-            },
-        );
+        let sheet = self
+            .sheets
+            .nearest(line, limit_of(&best), &mut scratch.triangles, counters)
+            .filter(|hit| nearer(hit.s, hit.face, &best));
         sheet.map_or(best, |hit| Some(Interface::of_sheet(&hit)))
     }
 
