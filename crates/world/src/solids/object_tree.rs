@@ -19,8 +19,11 @@ use super::{LeafVisit, Scratch, Solids};
 use crate::Counters;
 use crate::line::Line;
 
-/// The most faces of an object that is small.
-const SMALL: usize = 12;
+/// The most faces of an object that is small: balls, tubes, cones and rings. Of more, cells leave out
+/// those that do not matter, which pays.
+const SMALL: usize = 3;
+/// The fewest objects that are worth a tree.
+const MANY_OBJECTS: usize = 9;
 /// The most objects without an end: each is asked on every line.
 const FEW: usize = 8;
 
@@ -46,7 +49,9 @@ impl ObjectTree {
             words.into_iter().flat_map(csg::faces).nth(SMALL).is_none()
         };
         let endless = |object: &Active<'_>| !bounds[object.rank as usize].is_bounded();
-        all.objects().all(few_faces) && all.objects().filter(endless).nth(FEW).is_none()
+        all.object_count() >= MANY_OBJECTS
+            && all.objects().all(few_faces)
+            && all.objects().filter(endless).nth(FEW).is_none()
     }
 
     /// Over the objects of a leaf; `bounds` by rank.

@@ -16,13 +16,18 @@ pub(crate) fn world(solids: &[(Solid, i32)], method: Method) -> World {
             ..Object::solid("part", solid.clone(), material)
         });
     }
-    let config = WorldConfig {
-        method,
-        criteria: Criteria {
+    let criteria = match method {
+        // Criteria ask for cells, which it need not choose.
+        Method::Auto => Criteria::default(),
+        _ => Criteria {
             max_depth: 7,
             visit_cost: 0.1,
             ..Criteria::default()
         },
+    };
+    let config = WorldConfig {
+        method,
+        criteria,
         ..WorldConfig::default()
     };
     World::prepare(Arc::new(builder.build().expect("valid")), &config).expect("no meshes")
