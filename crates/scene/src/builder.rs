@@ -1,3 +1,5 @@
+use std::sync::Arc;
+
 use octray_geometry::{MaterialId, Primitive, ShapeError, Sheet, Solid, SolidNode, TriangleMesh};
 use octray_math::{Aabb, DVec3};
 use thiserror::Error;
@@ -9,7 +11,8 @@ use crate::{
 /// A complete scene. Made by [`SceneBuilder::build`], valid for good.
 #[derive(Clone, Debug)]
 pub struct Scene {
-    objects: Vec<Object>,
+    /// Shared with the scenes that this one was copied from.
+    objects: Arc<Vec<Object>>,
     materials: Vec<Material>,
     lights: Vec<Light>,
     camera: Option<Camera>,
@@ -182,7 +185,7 @@ impl SceneBuilder {
     pub fn new() -> Self {
         Self {
             scene: Scene {
-                objects: Vec::new(),
+                objects: Arc::default(),
                 materials: Vec::new(),
                 lights: Vec::new(),
                 camera: None,
@@ -202,7 +205,7 @@ impl SceneBuilder {
     /// Adds an object; its id is the number of objects before it.
     pub fn add_object(&mut self, object: Object) -> ObjectId {
         let id = ObjectId(self.scene.objects.len() as u32);
-        self.scene.objects.push(object);
+        Arc::make_mut(&mut self.scene.objects).push(object);
         id
     }
 
@@ -247,7 +250,7 @@ impl SceneBuilder {
         if scene.objects.len() > 1 << 30 {
             errors.push(SceneError::TooManyObjects(scene.objects.len()));
         }
-        for object in &scene.objects {
+        for object in scene.objects() {
             // The other checks walk the tree.
             if let Err(error) = check_size(&object.shape) {
                 let object = object.name.to_string();

@@ -78,7 +78,7 @@ impl Sheets {
                 world_from_mesh,
             }) = &object.shape
             {
-                let placement = Placement::new(&(frame.scene_from_world() * *world_from_mesh));
+                let placement = Placement::new(&(frame.scene_from_world() * **world_from_mesh));
                 let first_vertex = positions.len() as u32;
                 positions.extend(placement.positions(mesh));
                 let first_triangle = triangles.len() as u32;

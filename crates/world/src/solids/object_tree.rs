@@ -41,12 +41,12 @@ const MANY: u32 = u32::MAX;
 impl ObjectTree {
     /// Whether all objects are small; `bounds` by rank.
     pub(super) fn suits(all: &Content, bounds: &[Aabb]) -> bool {
-        let few_faces = |object: &Active| {
-            let words = [all.expression(object), all.clip(object)];
+        let few_faces = |object: Active<'_>| {
+            let words = [object.expression, object.clip];
             words.into_iter().flat_map(csg::faces).nth(SMALL).is_none()
         };
-        let endless = |object: &&Active| !bounds[object.rank as usize].is_bounded();
-        all.objects.iter().all(few_faces) && all.objects.iter().filter(endless).nth(FEW).is_none()
+        let endless = |object: &Active<'_>| !bounds[object.rank as usize].is_bounded();
+        all.objects().all(few_faces) && all.objects().filter(endless).nth(FEW).is_none()
     }
 
     /// Over the objects of a leaf; `bounds` by rank.

@@ -5,6 +5,7 @@ mod cells;
 mod divide;
 mod membership;
 mod nearest;
+mod occupied;
 mod packed;
 mod search;
 mod volumes;
