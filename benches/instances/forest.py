@@ -2,9 +2,9 @@
 
 Three forests of each kind, which cover squares of the ground equally densely: many copies, few
 copies, and the few written out as objects. The same rays go through all of them chunk by chunk in
-turn, in one process; rates are medians over the chunks, by processor time. Building and memory are measured in a
-process for each forest, memory as what the process has more than after importing. Results as a
-Markdown table, or with ``--json`` as JSON.
+turn, in one process; rates are medians over the chunks, by processor time. Building and memory are
+measured in a process for each forest, memory as what the process has more than after importing.
+Results as a Markdown table, or with ``--json`` as JSON.
 """
 
 from __future__ import annotations
