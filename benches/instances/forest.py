@@ -2,9 +2,9 @@
 
 Three forests of each kind, which cover squares of the ground equally densely: many copies, few
 copies, and the few written out as objects. The same rays go through all of them chunk by chunk in
-turn, in one process; rates are medians over the chunks. Building and memory are measured in a
-process for each forest, memory as what the process has more than after importing. Results as a
-Markdown table, or with ``--json`` as JSON.
+turn, in one process; rates are medians over the chunks, by processor time. Building and memory are
+measured in a process for each forest, memory as what the process has more than after importing.
+Results as a Markdown table, or with ``--json`` as JSON.
 """
 
 from __future__ import annotations
@@ -162,10 +162,10 @@ def rates(kind: str, many: int, few: int, chunks: int, threads: int) -> list[dic
             for name, (count, scene) in forests.items():
                 rng = np.random.default_rng(chunk)
                 batch = rays(what, CHUNK, math.sqrt(count) * SPACING, rng)
-                start = time.perf_counter()
+                start = time.process_time()
                 hits = scene.cast_rays(batch, threads=threads)
                 if chunk:  # The first one warms up.
-                    seconds[name].append((time.perf_counter() - start) / len(batch))
+                    seconds[name].append((time.process_time() - start) / len(batch))
                     met[name] += int(np.isfinite(hits.t).sum())
         for name, times in seconds.items():
             rate = 1 / statistics.median(times)
