@@ -11,11 +11,7 @@ export PIP_DISABLE_PIP_VERSION_CHECK := 1
 BIN := .venv/bin
 RUST_SOURCES := $(shell find crates -name '*.rs' -o -name Cargo.toml) Cargo.toml Cargo.lock
 
-<<<<<<< HEAD
-.PHONY: help demo test test-rust test-python conformance lint setup lab peers peers-speed peers-meshes embree clean toolchain
-=======
-.PHONY: help demo test test-rust test-python conformance lint setup lab bench peers peers-speed embree clean toolchain
->>>>>>> main
+.PHONY: help demo test test-rust test-python conformance lint setup lab bench peers peers-speed peers-meshes embree clean toolchain
 .DELETE_ON_ERROR:
 
 help: ## Print this list

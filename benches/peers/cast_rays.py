@@ -249,8 +249,8 @@ def main() -> None:
     if meshes["scan"] is None:
         print("scan: OCTRAY_CORPUS names no corpus with mesh/armadillo.obj")
     print(
-        "\n| mesh | rays | asked for | peer | threads | peer's time | octray's | octray is faster by"
-        " | differing |\n|---|---|---|---|---|--:|--:|--:|--:|"
+        "\n| mesh | rays | asked for | peer | threads | peer's time | octray's"
+        " | octray is faster by | differing |\n|---|---|---|---|---|--:|--:|--:|--:|"
     )
     lines = []
     for name, mesh in meshes.items():
