@@ -110,7 +110,11 @@ impl World {
     /// The normal of a hit of `query`, as [`World::interact`] has it, for less.
     #[must_use]
     pub fn normal(&self, query: &RayQuery, hit: &Hit) -> DVec3 {
-        let of_sheet = self.sheets.normal(hit.face);
+        let of_sheet = if hit.instance == 0 {
+            self.sheets.normal(hit.face)
+        } else {
+            None
+        };
         of_sheet.unwrap_or_else(|| self.interact(query, hit).normal)
     }
 

@@ -4,7 +4,8 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use octray_geometry::mesh::{
-    Placement, SearchCost, SearchMemory, TrianglePoint, TriangleSearch, TriangleTree,
+    NearestTriangle, Placement, SearchCost, SearchMemory, TrianglePoint, TriangleQuery,
+    TriangleSearch, TriangleTree,
 };
 use octray_geometry::{FaceId, MaterialId, SceneFrame, Sheet, TriangleMesh};
 use octray_math::{DVec3, Interval};
@@ -77,7 +78,7 @@ impl Sheets {
                 world_from_mesh,
             }) = &object.shape
             {
-                let placement = Placement::new(&(frame.scene_from_world() * *world_from_mesh));
+                let placement = Placement::new(&(frame.scene_from_world() * **world_from_mesh));
                 let first_vertex = positions.len() as u32;
                 positions.extend(placement.positions(mesh));
                 let first_triangle = triangles.len() as u32;
@@ -150,6 +151,45 @@ impl Sheets {
         let own = own.map(|all| all[(triangle - part.first_triangle) as usize]);
         let object = &scene.objects()[part.object.0 as usize];
         Some((part.object, own.unwrap_or(object.material)))
+    }
+
+    /// The search for the nearest triangle on a line, before `limit` or at it.
+    pub(crate) fn query(&self, line: &Line, limit: f64) -> TriangleQuery {
+        TriangleQuery {
+            ray: line.ray,
+            span: Interval::new(line.origin, limit.min(line.end)),
+            departed: self.triangle(line.departure.face),
+        }
+    }
+
+    /// What was found, as a face.
+    pub(crate) const fn hit(&self, found: &NearestTriangle) -> SheetHit {
+        SheetHit {
+            s: found.t,
+            face: FaceId(self.first_face + found.triangle),
+            entering: found.entering,
+        }
+    }
+
+    /// The nearest triangle on a line, before `limit` or at it.
+    pub(crate) fn nearest(
+        &self,
+        line: &Line,
+        limit: f64,
+        memory: &mut SearchMemory,
+        counters: &mut Counters,
+    ) -> Option<SheetHit> {
+        if self.triangles.is_empty() {
+            return None;
+        }
+        let mut nearest = None;
+        let query = self.query(line, limit);
+        self.triangles
+            .nearest(std::slice::from_ref(&query), memory, |_, found, cost| {
+                nearest = found.map(|found| self.hit(&found));
+                counters.add_search(&cost);
+            });
+        nearest
     }
 
     /// Tests the triangles near the line in `within`; `visit` returns the parameter beyond which

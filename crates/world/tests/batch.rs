@@ -31,7 +31,7 @@ fn world() -> World {
     builder.add_object(Object {
         shape: Shape::Sheet(Sheet::Mesh {
             mesh: tetrahedron(),
-            world_from_mesh: DAffine3::from_translation(DVec3::splat(-3.0)),
+            world_from_mesh: Box::new(DAffine3::from_translation(DVec3::splat(-3.0))),
         }),
         ..solid(Solid::half_space(DVec3::Z, 0.0).expect("valid"))
     });
