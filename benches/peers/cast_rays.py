@@ -2,8 +2,8 @@
 
 All are given the same arrays and are asked for the same answers, in turn, in one process; of each
 round the ratio is taken, and its median is printed. With one thread that is the processor's time;
-with several it is the clock on the wall, for nothing else says how long one waits. Rays of 32 bits are what Open3D takes and
-rays of 64 bits what trimesh takes; octray takes both and answers in 64 bits.
+with several it is the clock on the wall, for nothing else says how long one waits. Rays of 32 bits
+are what Open3D takes and rays of 64 bits what trimesh takes; octray takes both and answers in 64.
 """
 
 from __future__ import annotations
