@@ -147,7 +147,7 @@ def drilled(results: Results) -> str:
     """The drilled plate: time net of an empty picture, and time per ray."""
     rows = []
     threads = results.threads[0]
-    for scene in results.names:
+    for scene in sorted(results.names, key=results.shapes):
         if not scene.startswith("drilled"):
             continue
         ours = results.get(scene, threads, "octray", "net", "whole_s")
