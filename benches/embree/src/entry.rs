@@ -101,7 +101,8 @@ impl<'a> Structures<'a> {
                 TriangleTree::new(positions.clone(), subject.triangles.clone(), &[0], &search)
                     .map_err(|e| e.to_string())
             })?;
-            let bytes = built.bytes() + built.tree_stats().map_or(0, |stats| stats.bytes);
+            let nodes = built.tree_stats().map_or(0, |stats| stats.bytes);
+            let bytes = built.bytes() + built.packed_bytes() + nodes;
             builds.push(Build {
                 name: "octray/tree".to_owned(),
                 seconds,
