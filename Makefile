@@ -11,7 +11,7 @@ export PIP_DISABLE_PIP_VERSION_CHECK := 1
 BIN := .venv/bin
 RUST_SOURCES := $(shell find crates -name '*.rs' -o -name Cargo.toml) Cargo.toml Cargo.lock
 
-.PHONY: help demo test test-rust test-python conformance lint setup lab peers peers-speed clean toolchain
+.PHONY: help demo test test-rust test-python conformance lint setup lab bench peers peers-speed peers-meshes embree clean toolchain
 .DELETE_ON_ERROR:
 
 help: ## Print this list
@@ -47,11 +47,23 @@ LAB ?= full
 lab: .venv/lab ## Run every method on scenes of all sizes into docs/lab; LAB=quick takes a minute
 	@$(BIN)/python benches/lab/run.py --mode $(LAB)
 
+BENCH ?= --all -j 1 -j $(shell getconf _NPROCESSORS_ONLN)
+
+bench: .venv-peers/installed ## Race octray and the other ray tracers that are installed; BENCH= gives options
+	@$(PEERS_PYTHON) -m octray bench $(BENCH)
+
 peers: .venv-peers/installed ## Run the same scenes through octray and the peers that are installed
 	@$(PEERS_PYTHON) benches/peers/compare.py
 
 peers-speed: .venv-peers/installed ## Count the rays per second of octray and raysect
 	@$(PEERS_PYTHON) benches/peers/raysect_rays.py
+
+peers-meshes: .venv-peers/installed ## Time rays from Python onto meshes beside Open3D and trimesh with embreex
+	@$(PEERS_PYTHON) benches/peers/cast_rays.py
+
+# `make embree EMBREE='--mesh building --kind primary --size 256'` takes seconds; `--help` says more.
+embree: toolchain ## Trace meshes beside Embree, ray for ray, where that is installed
+	cargo run --release --manifest-path benches/embree/Cargo.toml --target-dir target/embree -- $(EMBREE)
 
 clean: ## Remove everything that was made here
 	rm -rf .venv .venv-peers $(OUT) target python/octray/*.so
@@ -85,7 +97,7 @@ DEVELOP := VIRTUAL_ENV='$(CURDIR)/.venv' $(BIN)/maturin develop --release
 
 # Peers have an environment of their own; one that cannot be installed here is left out and said so.
 # POV-Ray and OpenSCAD come from the system's packages.
-PEERS ?= raysect trimesh embreex manifold3d open3d
+PEERS ?= raysect trimesh embreex manifold3d open3d mitsuba
 PEERS_PYTHON := PYTHONPATH=python .venv-peers/bin/python
 
 .venv-peers/installed: .venv/installed

@@ -10,7 +10,6 @@ import signal
 import subprocess
 import sys
 import time
-from collections import deque
 from html.parser import HTMLParser
 from typing import TYPE_CHECKING, Any
 
@@ -20,6 +19,7 @@ import pytest
 import octray
 from conftest import COMMAND, ROOT, blocks
 from examples import run_python
+from json_page import check_against_page
 from octray import lab
 from octray.lab import selection
 from octray.lab.pictures import different_pixels
@@ -87,56 +87,12 @@ def test_the_table_has_every_method_with_the_same_picture(octray_command: Octray
     assert done.stderr == ""
 
 
-def documented() -> dict[str, str]:
-    """Every path of the JSON object with the types that docs/lab-json.md gives it."""
-    lines = re.findall(
-        r"^\| `([^`]+)` \| ([^|]+) \|", SCHEMA.read_text(encoding="utf-8"), re.MULTILINE
-    )
-    assert len(lines) == len(dict(lines)), "a path is documented twice"
-    return {path: kinds.strip() for path, kinds in lines}
-
-
-TYPES = {
-    "string": lambda value: isinstance(value, str),
-    "integer": lambda value: isinstance(value, int) and not isinstance(value, bool),
-    "number": lambda value: isinstance(value, (int, float)) and not isinstance(value, bool),
-    "boolean": lambda value: isinstance(value, bool),
-    "null": lambda value: value is None,
-    "list": lambda value: isinstance(value, list),
-    "object": lambda value: isinstance(value, dict),
-}
-
-
-def check_against_page(report: dict[str, Any]) -> None:
-    """Everything in the object is documented with its type, and everything documented is there."""
-    schema = documented()
-    seen = set()
-    work = deque((name, value) for name, value in report.items())
-    while work:
-        path, value = work.popleft()
-        if path not in schema:
-            # Names that depend on the run stand as `*`, and what is below them comes next.
-            path = re.sub(r"\.[^.]+$", ".*", path)
-        assert path in schema, f"{path} is not documented"
-        kinds = schema[path].split(" or ")
-        assert any(TYPES[kind](value) for kind in kinds), f"{path}: {value!r} is no {kinds}"
-        seen.add(path)
-        if isinstance(value, dict):
-            work.extend((f"{path}.{name}", part) for name, part in value.items())
-        elif isinstance(value, list):
-            work.extend((f"{path}[]", part) for part in value)
-    # Below something that is null here there may be more.
-    absent = {path for path in schema if path not in seen}
-    hidden = {path for path in absent if any(path.startswith((f"{s}.", f"{s}[")) for s in seen)}
-    assert absent == hidden
-
-
 def test_the_json_is_alone_and_as_documented(octray_command: Octray) -> None:
     methods = ("--accel", "auto", "--accel", "brute", "--accel", "octree:lvsi:sung")
     done = octray_command("lab", COUPLING, *SMALL, *methods, "--repeat", 2, "--json", "-j", 2)
     assert done.returncode == 0, done.stderr
     report: dict[str, Any] = json.loads(done.stdout)
-    check_against_page(report)
+    check_against_page(report, SCHEMA)
     assert report["format"] == 1
     assert report["reference"] == "brute"
     assert report["scene"]["objects"] == len(octray.load(COUPLING))
@@ -174,7 +130,7 @@ def test_the_json_is_alone_and_as_documented(octray_command: Octray) -> None:
 def test_triangles_of_meshes_have_cells_too(cube: Path) -> None:
     methods = ["auto", "brute", "octree", "octree:tree:ordered:bounding-box", "grid:4"]
     report = lab.run(cube, accel=methods, size=(32, 24), repeat=1, drawings=True)
-    check_against_page(json.loads(report.to_json()))
+    check_against_page(json.loads(report.to_json()), SCHEMA)
     auto, brute, octree, boxes, grid = (c.to_dict() for c in report.combinations)
     assert auto["nodes"] == {"wide": 1}
     assert (brute["nodes"], brute["triangle_cube_steps"]) == (None, None)
@@ -209,7 +165,7 @@ def test_the_budget_cuts_off_what_it_lists(octray_command: Octray) -> None:
     assert time.monotonic() - start < 60
     assert done.returncode == 4
     report = json.loads(done.stdout)
-    check_against_page(report)
+    check_against_page(report, SCHEMA)
     assert report["cut_off"] == ["auto"]
     assert report["combinations"][0]["status"] == "cut off by the budget"
     assert report["combinations"][0]["render"]["median_s"] is None
@@ -522,7 +478,7 @@ def test_numbers_are_short_and_have_no_exponent() -> None:
 def test_marks_of_solids_are_counted_against_the_analytic_test() -> None:
     methods = ["octree", "octree:tree:ordered:bounding-sphere", "octree:tree:ordered:shells"]
     report = lab.run(COUPLING, accel=methods, size=(16, 12), repeat=1)
-    check_against_page(json.loads(report.to_json()))
+    check_against_page(json.loads(report.to_json()), SCHEMA)
     analytic, sphere, shells = report.to_dict()["combinations"]
     for entry in (sphere, shells):
         found = entry["membership"]

@@ -10,7 +10,8 @@ import numpy as np
 import pytest
 
 import octray
-from scenes import balls, drilled, gears, mount, rings, scan, stadium, tetra, tree
+from octray.bench.shapes import HALF, holes, sphere_flake
+from scenes import drilled, gears, mount, rings, scan, stadium, tetra, tree
 from scenes.families import FAMILIES, generate, level_near, size
 
 if TYPE_CHECKING:
@@ -105,7 +106,7 @@ def _folders(tmp_path: Path) -> list[Path]:
 
 
 def test_every_ball_touches_its_parent() -> None:
-    generations = balls.flake(3)
+    generations = sphere_flake(3)
     for (parents, large), (children, small) in itertools.pairwise(generations):
         away = np.linalg.norm(children.reshape(len(parents), 9, 3) - parents[:, None], axis=2)
         np.testing.assert_allclose(away, large + small, rtol=1e-12)
@@ -118,7 +119,7 @@ def test_every_ball_touches_its_parent() -> None:
 def test_the_balls_stand_where_the_originals_do(corpus: Path) -> None:
     lines = (corpus / "spd" / "balls_s2.nff").read_text(encoding="ascii").splitlines()
     theirs = np.array([line.split()[1:4] for line in lines if line.startswith("s ")], dtype=float)
-    ours = np.vstack([centers for centers, _ in balls.flake(1)])
+    ours = np.vstack([centers for centers, _ in sphere_flake(1)])
     nearest = np.linalg.norm(theirs[:, None] - ours, axis=2).min(axis=0)
     assert nearest.max() < 1e-5
 
@@ -167,10 +168,10 @@ def test_wheels_that_mesh_do_not_meet() -> None:
 def test_no_hole_meets_another() -> None:
     for level in range(1, 5):
         side = drilled.SIDES[level]
-        x, y, radius = drilled.holes(side).reshape(side, side, 3).transpose(2, 0, 1)
+        x, y, radius = holes(side).reshape(side, side, 3).transpose(2, 0, 1)
         assert (np.diff(x, axis=1) > radius[:, 1:] + radius[:, :-1]).all()
         assert (np.diff(y, axis=0) > radius[1:] + radius[:-1]).all()
-        assert (np.abs(x) + radius < drilled.HALF).all()
+        assert (np.abs(x) + radius < HALF).all()
 
 
 def test_the_stadium_is_a_thousand_times_its_teapot() -> None:

@@ -94,7 +94,7 @@ MODES = {
             growing=("balls", "mount", "drilled", "stadium"),
             swept=("balls", "drilled", "rings", "tetra"),
             every=1,
-            budget=960,
+            budget=3900,
             timeout=20,
         ),
         Mode(

@@ -8,7 +8,15 @@ import numpy as np
 import numpy.typing as npt
 from typing_extensions import Unpack, disjoint_base
 
-from octray._options import Accel, Integrator, MeshRule, Overlaps, RenderOptions, View
+from octray._options import (
+    Accel,
+    Integrator,
+    MeshRule,
+    Overlaps,
+    Quality,
+    RenderOptions,
+    View,
+)
 from octray.ray import RayIntersector
 
 __all__ = [
@@ -292,6 +300,8 @@ class Hits:
     @property
     def object_id(self) -> _Integers: ...
     @property
+    def instance_id(self) -> _Integers: ...
+    @property
     def face_id(self) -> _Integers: ...
     @property
     def normal(self) -> _Floats: ...
@@ -320,6 +330,8 @@ class Intersections:
     def lengths(self) -> _Floats: ...
     @property
     def object_id(self) -> _Integers: ...
+    @property
+    def instance_id(self) -> _Integers: ...
     @property
     def material_id(self) -> _Integers: ...
     @property
@@ -381,6 +393,17 @@ class Scene:
         priority: int = 0,
         shadows: bool = True,
     ) -> int: ...
+    def add_instances(
+        self,
+        what: Solid | _Mesh | Sequence[Solid | _Mesh],
+        transforms: npt.ArrayLike,
+        *,
+        name: str | None = None,
+        material: Material | _Color | None = None,
+        solid: bool | MeshRule | None = None,
+        priority: int = 0,
+        shadows: bool = True,
+    ) -> int: ...
     def add_light(self, light: Light) -> None: ...
     @property
     def background(self) -> list[list[float]]: ...
@@ -403,6 +426,7 @@ class Scene:
         *,
         accel: Accel = "auto",
         threads: int | None = None,
+        quality: Quality | None = None,
         tree_objects: int | None = None,
         tree_depth: int | None = None,
         tree_cost: float | Literal["off"] | None = None,

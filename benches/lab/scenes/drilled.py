@@ -2,22 +2,18 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, TextIO
+from typing import TextIO
 
 import numpy as np
 
+from octray.bench.shapes import HALF, THICK, holes
+from octray.bench.writers.text import rows
 from scenes import pov
-from scenes.nff import rows
-
-if TYPE_CHECKING:
-    from scenes.nff import Floats
 
 TITLE = "drilled"
 WHAT = "one CSG part: a plate minus as many cylinders as there are holes"
 SUFFIX = ".pov"
 
-#: Half the side of the plate and half its height.
-HALF, THICK = 1.0, 0.04
 #: On a side, at every level: about a factor of ten in holes from one to the next.
 SIDES = (1, 3, 10, 32, 100, 316, 1000)
 
@@ -39,14 +35,3 @@ def write(level: int, file: TextIO) -> None:
     x, y, radius = holes(SIDES[level]).T
     rows(file, pattern, np.column_stack([x, y, x, y, radius]))
     file.write(f"  {pov.material((0.55, 0.62, 0.72), mirror=0.15)}\n}}\n")
-
-
-def holes(side: int) -> Floats:
-    """Centres and radii: shape (side^2, 3). No hole meets another or the rim."""
-    pitch = 2 * HALF / side
-    ticks = (np.arange(side) + 0.5) * pitch - HALF
-    x, y = (grid.ravel() for grid in np.meshgrid(ticks, ticks))
-    # Sizes change along the diagonals, from a quarter to a third of the pitch.
-    step = (np.arange(side)[:, None] * 3 + np.arange(side)) % 7
-    radius = (0.25 + step.ravel() / 6 * 0.15) * pitch
-    return np.column_stack([x, y, radius])

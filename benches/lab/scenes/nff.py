@@ -6,6 +6,8 @@ from typing import TYPE_CHECKING, TextIO
 
 import numpy as np
 
+from octray.bench.writers.text import rows
+
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
@@ -15,21 +17,10 @@ if TYPE_CHECKING:
 
 Vector = tuple[float, float, float]
 
-#: How many shapes are put into words at once.
-_CHUNK = 20_000
-
 
 def words(*values: float) -> str:
     """Numbers with nine digits, which is enough for a place in a scene."""
     return " ".join(f"{value:.9g}" for value in values)
-
-
-def rows(file: TextIO, pattern: str, table: Floats) -> None:
-    """Write a line, or several, for each row of numbers; ``pattern`` holds a %.9g for each."""
-    for start in range(0, len(table), _CHUNK):
-        part = table[start : start + _CHUNK]
-        # Adding 0 turns -0 into 0.
-        file.write((pattern * len(part)) % tuple((part + 0.0).ravel().tolist()))
 
 
 def view(

@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, TextIO
 
 import numpy as np
 
+from octray.bench.writers.text import rows
 from scenes import pov
-from scenes.nff import rows
 
 if TYPE_CHECKING:
     from scenes.nff import Floats

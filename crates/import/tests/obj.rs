@@ -93,7 +93,7 @@ fn groups_and_objects_become_objects_with_names() {
          o rest\nf 2 3 4\no box\nf 3 2 1\n",
     );
     let scene = imported.scene.expect("valid");
-    let names: Vec<&str> = scene.objects().iter().map(|o| o.name.as_str()).collect();
+    let names: Vec<&str> = scene.objects().iter().map(|o| &*o.name).collect();
     assert_eq!(names, ["a", "box", "box/lid left", "rest"]);
     let counts = scene.objects().iter().map(|o| mesh_of(o).triangles().len());
     assert_eq!(counts.collect::<Vec<_>>(), [1, 2, 1, 1]);

@@ -96,14 +96,14 @@ fn every_solid_is_an_object() {
     let all = triangles(&Prism::regular(4, 1.0));
     let text = ascii("one", &all[..2]) + &ascii("", &[]) + &ascii("the other", &all[2..]);
     let scene = import(text).scene.expect("valid");
-    let names: Vec<&str> = scene.objects().iter().map(|o| o.name.as_str()).collect();
+    let names: Vec<&str> = scene.objects().iter().map(|o| &*o.name).collect();
     assert_eq!(names, ["one", "the other"]);
     assert_eq!(
         mesh_of(&scene.objects()[1]).triangles().len(),
         all.len() - 2
     );
     let nameless = import(ascii("", &all)).scene.expect("valid");
-    assert_eq!(nameless.objects()[0].name, "a");
+    assert_eq!(&*nameless.objects()[0].name, "a");
 }
 
 #[test]

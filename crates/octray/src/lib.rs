@@ -44,7 +44,7 @@
 //! let camera = Camera::look_at(DVec3::new(3.0, -5.0, 3.0), DVec3::ZERO, DVec3::Z, 0.7);
 //! builder.set_camera(camera.expect("eye and target differ"));
 //! let scene = builder.build().expect("all numbers are finite");
-//! assert_eq!(scene.objects()[0].name, "part");
+//! assert_eq!(&*scene.objects()[0].name, "part");
 //! # Ok::<(), octray::geometry::ShapeError>(())
 //! ```
 //!

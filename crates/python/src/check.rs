@@ -14,19 +14,33 @@ use pyo3::types::{PyDict, PyList};
 /// The distinct meshes of an object, in the order of their first use.
 fn meshes_of(object: &Object) -> Vec<Arc<TriangleMesh>> {
     let mut found: Vec<Arc<TriangleMesh>> = Vec::new();
+    match &object.shape {
+        Shape::Instances(instances) => {
+            let parts = instances.prototype().parts().objects();
+            parts.iter().for_each(|part| add_meshes(part, &mut found));
+        }
+        _ => add_meshes(object, &mut found),
+    }
+    found
+}
+
+fn add_meshes(object: &Object, found: &mut Vec<Arc<TriangleMesh>>) {
     let mut stack: Vec<&Solid> = Vec::new();
+    let mut add = |mesh: &Arc<TriangleMesh>| {
+        if !found.iter().any(|known| Arc::ptr_eq(known, mesh)) {
+            found.push(Arc::clone(mesh));
+        }
+    };
     match &object.shape {
         Shape::Solid(solid) => stack.push(solid),
-        Shape::Sheet(Sheet::Mesh { mesh, .. }) => found.push(Arc::clone(mesh)),
+        Shape::Sheet(Sheet::Mesh { mesh, .. }) => add(mesh),
         Shape::Sheet(Sheet::Shell { solid, clip }) => stack.extend([clip, solid]),
+        // Prototypes hold none.
+        Shape::Instances(_) => {}
     }
     while let Some(solid) = stack.pop() {
         match solid.node() {
-            SolidNode::Primitive(Primitive::Mesh(mesh)) => {
-                if !found.iter().any(|known| Arc::ptr_eq(known, mesh)) {
-                    found.push(Arc::clone(mesh));
-                }
-            }
+            SolidNode::Primitive(Primitive::Mesh(mesh)) => add(mesh),
             SolidNode::Empty | SolidNode::Primitive(_) => {}
             SolidNode::Transformed { child, .. }
             | SolidNode::WithMaterial { child, .. }
@@ -36,7 +50,6 @@ fn meshes_of(object: &Object) -> Vec<Arc<TriangleMesh>> {
             }
         }
     }
-    found
 }
 
 fn place<'py>(py: Python<'py>, flaw: &Flaw) -> PyResult<Bound<'py, PyDict>> {
@@ -57,7 +70,7 @@ pub(crate) fn meshes<'py>(py: Python<'py>, scene: &Scene) -> PyResult<Bound<'py,
             let report = py.detach(|| mesh.check());
             let dict = PyDict::new(py);
             dict.set_item("object", id)?;
-            dict.set_item("name", &object.name)?;
+            dict.set_item("name", &*object.name)?;
             dict.set_item("triangles", report.triangles)?;
             dict.set_item("closed", report.is_closed())?;
             dict.set_item("solid", report.is_sound())?;

@@ -33,7 +33,7 @@ pub(crate) fn primitive_name(primitive: &Primitive) -> &'static str {
     }
 }
 
-/// How many of what a shape is made of.
+/// How many of what a shape is made of; of instances, one copy.
 #[derive(Default)]
 struct Parts {
     primitives: BTreeMap<&'static str, usize>,
@@ -67,18 +67,28 @@ impl Parts {
 
     fn of(shape: &Shape) -> Self {
         let mut parts = Self::default();
+        parts.add_shape(shape);
+        parts
+    }
+
+    fn add_shape(&mut self, shape: &Shape) {
         match shape {
-            Shape::Solid(solid) => parts.add(solid),
+            Shape::Solid(solid) => self.add(solid),
             Shape::Sheet(Sheet::Mesh { mesh, .. }) => {
-                parts.primitives.insert("mesh", 1);
-                parts.triangles = mesh.triangles().len();
+                *self.primitives.entry("mesh").or_default() += 1;
+                self.triangles += mesh.triangles().len();
             }
             Shape::Sheet(Sheet::Shell { solid, clip }) => {
-                parts.add(solid);
-                parts.add(clip);
+                self.add(solid);
+                self.add(clip);
+            }
+            // Prototypes hold no instances.
+            Shape::Instances(instances) => {
+                for part in instances.prototype().parts().objects() {
+                    self.add_shape(&part.shape);
+                }
             }
         }
-        parts
     }
 }
 
@@ -92,12 +102,18 @@ fn object<'py>(py: Python<'py>, scene: &Scene, object: &Object) -> PyResult<Boun
     let parts = Parts::of(&object.shape);
     let bounds = object.shape.bounds();
     let dict = PyDict::new(py);
-    dict.set_item("name", &object.name)?;
+    dict.set_item("name", &*object.name)?;
     let kind = match object.shape {
         Shape::Solid(_) => "solid",
         Shape::Sheet(_) => "sheet",
+        Shape::Instances(_) => "instances",
     };
     dict.set_item("kind", kind)?;
+    let copies = match &object.shape {
+        Shape::Instances(instances) => Some(instances.world_from_prototype().len()),
+        _ => None,
+    };
+    dict.set_item("instances", copies)?;
     dict.set_item("material", &scene.material(object.material).name)?;
     dict.set_item("primitives", parts.primitives)?;
     dict.set_item("triangles", parts.triangles)?;

@@ -12,6 +12,7 @@ mod describe;
 mod diagnostics;
 mod files;
 mod image;
+mod instances;
 mod light;
 mod load;
 mod material;

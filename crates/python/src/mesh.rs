@@ -26,8 +26,8 @@ impl Source {
         if let Ok(path) = object.extract::<PathBuf>() {
             return Ok(Self::File(path));
         }
-        let pair = object.is_instance_of::<PyTuple>() || object.is_instance_of::<PyList>();
-        if pair && object.len()? == 2 {
+        let pair = is_pair(object)?;
+        if pair {
             let (vertices, faces) = (object.get_item(0)?, object.get_item(1)?);
             return from_arrays(&vertices, &faces).map(Self::Arrays);
         }
@@ -39,6 +39,30 @@ impl Source {
             ))),
         }
     }
+
+    /// Whether this names a mesh by itself: a path, a pair of arrays as a tuple, or an object with
+    /// `.vertices` and `.faces`.
+    pub(crate) fn is_whole(object: &Bound<'_, PyAny>) -> bool {
+        let has = |name: &str| object.hasattr(name).unwrap_or(false);
+        object.extract::<PathBuf>().is_ok()
+            || (object.is_instance_of::<PyTuple>() && is_pair_of_arrays(object))
+            || (has("vertices") && has("faces"))
+    }
+}
+
+/// Whether it has two items.
+fn is_pair(object: &Bound<'_, PyAny>) -> PyResult<bool> {
+    let pair = object.is_instance_of::<PyTuple>() || object.is_instance_of::<PyList>();
+    Ok(pair && object.len()? == 2)
+}
+
+/// Whether it is a pair whose items have rows.
+fn is_pair_of_arrays(object: &Bound<'_, PyAny>) -> bool {
+    let has_rows = |i: usize| {
+        let item = object.get_item(i).and_then(|item| item.get_item(0));
+        item.is_ok_and(|row| row.len().is_ok())
+    };
+    is_pair(object).unwrap_or(false) && has_rows(0) && has_rows(1)
 }
 
 /// A mesh where it stands in the world.
@@ -58,7 +82,7 @@ impl Placed {
                 world_from_mesh,
             }) => Some(Self {
                 mesh: Arc::clone(mesh),
-                world_from_mesh: *world_from_mesh,
+                world_from_mesh: **world_from_mesh,
                 solid: false,
             }),
             ObjectShape::Solid(solid) => match solid.node() {
@@ -69,7 +93,7 @@ impl Placed {
                 }),
                 _ => None,
             },
-            ObjectShape::Sheet(Sheet::Shell { .. }) => None,
+            ObjectShape::Sheet(Sheet::Shell { .. }) | ObjectShape::Instances(_) => None,
         }
     }
 
@@ -104,7 +128,7 @@ impl Placed {
         }
         Ok(ObjectShape::Sheet(Sheet::Mesh {
             mesh,
-            world_from_mesh: self.world_from_mesh,
+            world_from_mesh: Box::new(self.world_from_mesh),
         }))
     }
 }

@@ -36,8 +36,8 @@ impl Scene {
         common: &Common<'_, '_>,
     ) -> u32 {
         let name = match common.name.unwrap_or(name) {
-            "" => format!("object {}", self.so_far().objects().len()),
-            name => name.to_owned(),
+            "" => format!("object {}", self.so_far().objects().len()).into(),
+            name => name.into(),
         };
         let object = Object {
             name,
@@ -67,16 +67,19 @@ impl Scene {
         let (placed, material) = match (given.transpose()?, look) {
             (Some(id), _) => (placed.with_ids(|_| id)?, id),
             (None, Some((materials, own))) => {
-                let ids: Vec<MaterialId> = materials
-                    .iter()
-                    .map(|m| self.material_id(m.clone()))
-                    .collect();
+                let ids = self.adopted(materials);
                 let new = |old: MaterialId| ids[old.0 as usize];
                 (placed.with_ids(new)?, new(own))
             }
             (None, None) => (placed, self.wanted_material(None)?),
         };
         Ok(self.add_shape(placed.shape(filled)?, name, material, common))
+    }
+
+    /// The ids that a file's materials get here.
+    pub(crate) fn adopted(&mut self, materials: &[scene::Material]) -> Vec<MaterialId> {
+        let own = materials.iter().map(|m| self.material_id(m.clone()));
+        own.collect()
     }
 
     /// The material of an argument, or the usual one.

@@ -18,6 +18,7 @@ use crate::cells::{self, Cells};
 use crate::convert::{Triple, vector};
 use crate::diagnostics::{Diagnostic, invalid_scene};
 use crate::image::Image;
+use crate::instances;
 use crate::light::Light;
 use crate::mesh;
 use crate::objects::Common;
@@ -68,6 +69,11 @@ impl Scene {
 
     pub(crate) fn own_camera(&self) -> Option<scene::Camera> {
         self.builder.so_far().camera().copied()
+    }
+
+    /// Keeps what an importer said.
+    pub(crate) fn said(&mut self, diagnostics: Vec<Diagnostic>) {
+        self.diagnostics.extend(diagnostics);
     }
 
     pub(crate) const fn revision(&self) -> u64 {
@@ -178,6 +184,41 @@ impl Scene {
         }
     }
 
+    /// Adds many copies of a solid, a mesh (as `add_mesh` takes it), or a list of solids and meshes,
+    /// one for each of the affine maps in an array of shape (N, 4, 4) or (N, 3, 4), by rows. Returns
+    /// the object's id; `Hits.instance_id` tells the copies apart.
+    ///
+    /// What is copied must be bounded. A copy takes about 140 bytes however large what is copied is.
+    /// Where solids overlap, a copy counts as an object would, of the size of its box; the later copy
+    /// before the earlier. `solid` fills meshes as in `add_mesh`. A ValueError says which transform
+    /// is not finite, flat or not affine.
+    #[pyo3(signature = (
+        what, transforms, *, name = None, material = None, solid = None, priority = 0, shadows = true
+    ))]
+    #[expect(clippy::too_many_arguments, reason = "most by keyword")]
+    fn add_instances(
+        &mut self,
+        what: &Bound<'_, PyAny>,
+        transforms: &Bound<'_, PyAny>,
+        name: Option<&str>,
+        material: Option<&Bound<'_, PyAny>>,
+        solid: Option<&Bound<'_, PyAny>>,
+        priority: i32,
+        shadows: bool,
+    ) -> PyResult<u32> {
+        let filled = solid.map(mesh::filling).transpose()?.flatten();
+        let common = Common {
+            name,
+            material,
+            priority,
+            shadows,
+        };
+        let id = self.wanted_material(material)?;
+        let given = material.map(|_| id);
+        let copies = instances::instances(self, what, transforms, filled, given)?;
+        Ok(self.add_shape(Shape::Instances(copies), "", id, &common))
+    }
+
     /// Adds a light.
     fn add_light(&mut self, light: &Light) {
         self.changed().add_light(light.inner().clone());
@@ -228,7 +269,7 @@ impl Scene {
     #[getter]
     fn names(&self) -> Vec<&str> {
         let objects = self.builder.so_far().objects();
-        objects.iter().map(|o| o.name.as_str()).collect()
+        objects.iter().map(|o| &*o.name).collect()
     }
 
     /// The names of the materials; a material's id is an index into it.
@@ -254,6 +295,8 @@ impl Scene {
     /// Builds the trees now rather than with the first picture or query, by other criteria if these
     /// are given. A cell is divided if all of them agree; the answers are the same by any.
     ///
+    /// `quality`: "fast" builds the tree over the triangles of meshes in less time, "full" (the
+    /// default) one in which rays find them in less.
     /// `tree_objects`: a cell of at most so many surfaces is not divided. `tree_depth`: the deepest
     /// level, 0 to 21. `tree_cost`: what entering a cell costs in planes intersected with a ray, as a
     /// cell is divided where the expected cost of rays falls; `"off"` divides whatever it costs.
@@ -263,8 +306,8 @@ impl Scene {
     /// (rows used for each row of the table) say how large a hash table is. `cells`: the path of a
     /// list of cells (`dump_cells`) along which the octree over solids is built.
     #[pyo3(signature = (
-        *, accel = "auto", threads = None, tree_objects = None, tree_depth = None, tree_cost = None,
-        tree_share = None, tree_memory = None, lvsi_table = None, lvsi_load = None,
+        *, accel = "auto", threads = None, quality = None, tree_objects = None, tree_depth = None,
+        tree_cost = None, tree_share = None, tree_memory = None, lvsi_table = None, lvsi_load = None,
         cells = None
     ))]
     #[expect(clippy::too_many_arguments, reason = "all by keyword")]
@@ -272,6 +315,7 @@ impl Scene {
         slf: &Bound<'_, Self>,
         accel: &str,
         threads: Option<usize>,
+        quality: Option<&str>,
         tree_objects: Option<u32>,
         tree_depth: Option<u32>,
         tree_cost: Option<&Bound<'_, PyAny>>,
@@ -282,6 +326,7 @@ impl Scene {
         cells: Option<PathBuf>,
     ) -> PyResult<()> {
         let building = Building {
+            quality,
             objects: tree_objects,
             depth: tree_depth,
             cost: tree_cost,

@@ -1,8 +1,8 @@
 //! Figures about what was built, as dictionaries.
 //!
 //! `trees.cells`, `trees.triangles` and `trees.wide` are about the cells over solids, those over the
-//! triangles of sheets, where each triangle is a part, and the wide tree over these; `None` where
-//! the method has none. Of a grid, cells are voxels, at depth 0. `triangle_cube` says of cells over
+//! triangles of sheets, where each triangle is a part, and the wide tree over these, and
+//! `trees.instances` about the wide tree over copies of prototypes; `None` where the method has none. Of a grid, cells are voxels, at depth 0. `triangle_cube` says of cells over
 //! triangles how many `questions` were asked while they were divided, which of the `steps` of the
 //! triangle-cube test decided how many, how many `references` to triangles the cells keep, and how
 //! many the fullest (`most`).
@@ -87,6 +87,7 @@ fn cells<'py>(
 fn wide<'py>(py: Python<'py>, stats: &WideTreeStats) -> PyResult<Bound<'py, PyDict>> {
     let dict = PyDict::new(py);
     dict.set_item("items", stats.items)?;
+    dict.set_item("references", stats.references)?;
     dict.set_item("nodes", stats.nodes)?;
     dict.set_item("leaves", stats.leaves)?;
     dict.set_item("depth", stats.depth)?;
@@ -105,6 +106,7 @@ fn memory<'py>(py: Python<'py>, stats: &MemoryStats) -> PyResult<Bound<'py, PyDi
     dict.set_item("triangles", stats.triangles)?;
     dict.set_item("triangle_cells", stats.triangle_cells)?;
     dict.set_item("wide_trees", stats.wide_trees)?;
+    dict.set_item("instances", stats.instances)?;
     dict.set_item("total", stats.total())?;
     dict.set_item("building", stats.building)?;
     Ok(dict)
@@ -125,6 +127,8 @@ fn world<'py>(py: Python<'py>, stats: &WorldStats) -> PyResult<Bound<'py, PyDict
     dict.set_item("merged_surfaces", stats.merged_surfaces)?;
     dict.set_item("faces", stats.faces)?;
     dict.set_item("triangles", stats.triangles)?;
+    dict.set_item("instances", stats.instances)?;
+    dict.set_item("prototypes", stats.prototypes)?;
     Ok(dict)
 }
 
@@ -181,6 +185,8 @@ pub(crate) fn add(py: Python<'_>, report: &Bound<'_, PyDict>, prepared: &Prepare
     trees.set_item("triangles", over_triangles.transpose()?)?;
     let over_triangles = stats.triangle_tree.as_ref();
     trees.set_item("wide", over_triangles.map(|s| wide(py, s)).transpose()?)?;
+    let over_copies = stats.instance_tree.as_ref();
+    trees.set_item("instances", over_copies.map(|s| wide(py, s)).transpose()?)?;
     let marking = stats.marking.as_ref();
     trees.set_item(
         "membership",

@@ -5,6 +5,7 @@
 
 mod builder;
 mod camera;
+mod instances;
 mod light;
 mod material;
 mod object;
@@ -12,6 +13,7 @@ mod srgb;
 
 pub use builder::{Scene, SceneBuilder, SceneError, Settings};
 pub use camera::{Camera, Projection};
+pub use instances::{Instances, InstancesError, Prototype};
 pub use light::{Falloff, Light, LightKind};
 pub use material::{
     Background, Color, ColorStop, Fade, Finish, Interior, Material, Pattern, Pigment, Reflection,

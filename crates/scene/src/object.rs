@@ -1,5 +1,9 @@
+use std::sync::Arc;
+
 use octray_geometry::{MaterialId, Sheet, Solid};
 use octray_math::Aabb;
+
+use crate::Instances;
 
 /// The index of an object in [`crate::Scene::objects`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -12,6 +16,8 @@ pub enum Shape {
     Solid(Solid),
     /// Has two sides.
     Sheet(Sheet),
+    /// Many copies of solids and sheets.
+    Instances(Instances),
 }
 
 impl Shape {
@@ -21,6 +27,7 @@ impl Shape {
         match self {
             Self::Solid(solid) => solid.bounds(),
             Self::Sheet(sheet) => sheet.bounds(),
+            Self::Instances(instances) => instances.bounds(),
         }
     }
 }
@@ -28,9 +35,9 @@ impl Shape {
 /// A thing in the scene.
 #[derive(Clone, Debug)]
 pub struct Object {
-    /// For messages, listings and queries; need not be unique.
-    pub name: String,
-    /// Geometry in world coordinates.
+    /// For messages, listings and queries; need not be unique. Shared by those that have the same.
+    pub name: Arc<str>,
+    /// Geometry in world coordinates; of instances, transforms into them.
     pub shape: Shape,
     /// For every face that has no material of its own, and for the inside.
     pub material: MaterialId,
@@ -43,17 +50,27 @@ pub struct Object {
 impl Object {
     /// A solid with the usual settings.
     #[must_use]
-    pub fn solid(name: impl Into<String>, solid: Solid, material: MaterialId) -> Self {
+    pub fn solid(name: impl Into<Arc<str>>, solid: Solid, material: MaterialId) -> Self {
         Self::new(name, Shape::Solid(solid), material)
     }
 
     /// A sheet with the usual settings.
     #[must_use]
-    pub fn sheet(name: impl Into<String>, sheet: Sheet, material: MaterialId) -> Self {
+    pub fn sheet(name: impl Into<Arc<str>>, sheet: Sheet, material: MaterialId) -> Self {
         Self::new(name, Shape::Sheet(sheet), material)
     }
 
-    fn new(name: impl Into<String>, shape: Shape, material: MaterialId) -> Self {
+    /// Copies of a prototype with the usual settings.
+    #[must_use]
+    pub fn instances(
+        name: impl Into<Arc<str>>,
+        instances: Instances,
+        material: MaterialId,
+    ) -> Self {
+        Self::new(name, Shape::Instances(instances), material)
+    }
+
+    pub(crate) fn new(name: impl Into<Arc<str>>, shape: Shape, material: MaterialId) -> Self {
         Self {
             name: name.into(),
             shape,

@@ -4,8 +4,9 @@ use octray_geometry::FaceId;
 use octray_math::DVec3;
 use octray_scene::ObjectId;
 
+use crate::instances::{Ranks, Standing};
 use crate::line::Line;
-use crate::solids::{Passage, Scratch, Solids};
+use crate::solids::{Interface, Passage, Scratch, Solids};
 use crate::{Counters, RayQuery, Region, World};
 
 /// Whose chords are listed where solids overlap.
@@ -25,6 +26,8 @@ pub enum Overlaps {
 pub struct Chord {
     /// The solid.
     pub object: ObjectId,
+    /// Which copy it is, as [`crate::Hit::instance`].
+    pub instance: u32,
     /// Where it begins.
     pub enter: ChordEnd,
     /// Where it ends.
@@ -39,6 +42,8 @@ pub struct ChordEnd {
     pub t: f64,
     /// The face that is crossed there, [`FaceId::NONE`] where the ray starts or never leaves.
     pub face: FaceId,
+    /// Which copy the face is of, as [`crate::Hit::instance`].
+    pub instance: u32,
     /// Whether the face belongs to another solid, which displaces this one: its outward normal
     /// points into the chord.
     pub displaced: bool,
@@ -70,6 +75,8 @@ pub(crate) struct ChordScratch {
     /// Of these, the ones whose chords go on there.
     visible: Vec<u32>,
     open: Vec<Open>,
+    /// What takes part, by rank, where copies do.
+    standings: Vec<Standing>,
 }
 
 impl World {
@@ -104,19 +111,42 @@ impl World {
     ) {
         let mut own = std::mem::take(&mut scratch.chords);
         let mut line = *line;
-        self.solids
-            .passages(&line, &mut own.passages, scratch, counters);
-        while let Some(first) = own.passages.first()
-            && self.starts_on(&line, first.s, first.face, first.entering)
+        self.ranked_passages(&line, &mut own, scratch, counters);
+        while let Some(first) = own.first_boundary(&self.solids)
+            && self.starts_on(&line, &first)
         {
             line = line.beyond(first.s);
-            self.solids
-                .passages(&line, &mut own.passages, scratch, counters);
+            self.ranked_passages(&line, &mut own, scratch, counters);
         }
-        self.solids
-            .unbounded_at_start(&line, &mut own.held, scratch, counters);
-        collect(&self.solids, &line, overlaps, &mut own, chords);
+        let standings = std::mem::take(&mut own.standings);
+        let ranks = Ranks {
+            solids: &self.solids,
+            standings: &standings,
+        };
+        collect(&ranks, &line, overlaps, &mut own, chords);
+        own.standings = standings;
         scratch.chords = own;
+    }
+
+    /// The passages of the line, and the unbounded solids that hold its start, by rank.
+    fn ranked_passages(
+        &self,
+        line: &Line,
+        own: &mut ChordScratch,
+        scratch: &mut Scratch,
+        counters: &mut Counters,
+    ) {
+        let solids = &self.solids;
+        solids.passages(line, &mut own.passages, scratch, counters);
+        solids.unbounded_at_start(line, &mut own.held, scratch, counters);
+        self.add_copy_passages(
+            line,
+            &mut own.passages,
+            &mut own.held,
+            &mut own.standings,
+            scratch,
+            counters,
+        );
     }
 
     /// How many boundaries the ray crosses: where a solid is entered or left, as
@@ -146,18 +176,23 @@ impl World {
         let ends = chords.iter().flat_map(|c| [c.enter.face, c.exit.face]);
         let crossed = ends.filter(|face| *face != FaceId::NONE).count() as u64;
         scratch.counted = chords;
-        let mut sheets = 0;
+        // A triangle may be shown more than once.
+        let mut sheets: Vec<FaceId> = Vec::new();
         self.sheets.visit_line(
             line,
             f64::INFINITY,
             &mut scratch.triangles,
             counters,
             |hit| {
-                sheets += u64::from(!self.starts_on(line, hit.s, hit.face, hit.entering));
+                if !self.starts_on(line, &Interface::of_sheet(hit)) {
+                    sheets.push(hit.face);
+                }
                 f64::INFINITY
             },
         );
-        crossed + sheets
+        sheets.sort_unstable();
+        sheets.dedup();
+        crossed + sheets.len() as u64 + self.count_copied_sheets(line, scratch, counters)
     }
 
     /// The unit normal at an end of one of the ray's chords, pointing out of the chord's solid (or
@@ -167,8 +202,9 @@ impl World {
         let normal = || {
             let line = self.line(query, false)?;
             let point = self.place.scene_from_world(query.ray.at(end.t));
-            let surface = self.solids.point(&line, end.face, end.entering, point)?;
-            Some(surface.normal)
+            let face = (end.instance, end.face, end.entering);
+            self.point(&line, face, point)
+                .map(|(point, _)| point.normal)
         };
         if end.face == FaceId::NONE {
             return DVec3::ZERO;
@@ -195,7 +231,23 @@ impl World {
     ) -> Region {
         let query = RayQuery::new(octray_math::Ray::new(point, DVec3::X));
         self.line(&query, false).map_or(Region::OUTSIDE, |line| {
-            self.solids.region_at(&line, line.origin, scratch, counters)
+            self.region_with_copies(&line, line.origin, scratch, counters)
+        })
+    }
+}
+
+impl ChordScratch {
+    /// The first passage, as a boundary without regions.
+    fn first_boundary(&self, solids: &Solids) -> Option<Interface> {
+        let standings = &self.standings;
+        let first = self.passages.first()?;
+        Some(Interface {
+            s: first.s,
+            face: first.face,
+            instance: Ranks { solids, standings }.instance(first.rank),
+            entering: first.entering,
+            from: Region::OUTSIDE,
+            to: Region::OUTSIDE,
         })
     }
 }
@@ -203,7 +255,7 @@ impl World {
 /// Pairs the passages of a line to chords, which are added to `chords`. `own.held` comes with the unbounded solids that hold the
 /// start.
 fn collect(
-    solids: &Solids,
+    ranks: &Ranks<'_>,
     line: &Line,
     overlaps: Overlaps,
     own: &mut ChordScratch,
@@ -214,14 +266,16 @@ fn collect(
         held,
         visible,
         open,
+        ..
     } = own;
     add_held_at_start(passages, held);
     open.clear();
     let first = chords.len();
-    list_visible(solids, overlaps, held, visible);
+    list_visible(ranks, overlaps, held, visible);
     let without_face = |s: f64| ChordEnd {
         t: line.t(s),
         face: FaceId::NONE,
+        instance: 0,
         displaced: false,
         entering: false,
     };
@@ -230,7 +284,8 @@ fn collect(
     let begin = |rank: u32, enter: ChordEnd, chords: &mut Vec<Chord>| {
         let chord = chords.len();
         chords.push(Chord {
-            object: solids.object_of(rank),
+            object: ranks.object(rank),
+            instance: ranks.instance(rank),
             enter,
             exit: never,
         });
@@ -248,11 +303,12 @@ fn collect(
             ChordEnd {
                 t: line.t(passage.s),
                 face: passage.face,
+                instance: ranks.instance(passage.rank),
                 displaced: own.is_none(),
                 entering: passage.entering,
             }
         };
-        list_visible(solids, overlaps, held, visible);
+        list_visible(ranks, overlaps, held, visible);
         open.retain(|o| {
             let stays = visible.binary_search(&o.rank).is_ok();
             if !stays {
@@ -307,12 +363,12 @@ fn add_held_at_start(passages: &[Passage], held: &mut Vec<u32>) {
 }
 
 /// Of the solids that hold a point, by rank, those whose chords go on there.
-fn list_visible(solids: &Solids, overlaps: Overlaps, held: &[u32], visible: &mut Vec<u32>) {
+fn list_visible(ranks: &Ranks<'_>, overlaps: Overlaps, held: &[u32], visible: &mut Vec<u32>) {
     let count = match overlaps {
         Overlaps::Objects => held.len(),
         Overlaps::Regions => held.len().min(1),
         Overlaps::Priorities => {
-            let priority = |rank: &u32| solids.priority_of(*rank);
+            let priority = |rank: &u32| ranks.priority(*rank);
             let first = held.first().map(priority);
             held.partition_point(|rank| Some(priority(rank)) == first)
         }

@@ -6,9 +6,13 @@ use octray_scene::ObjectId;
 use crate::World;
 
 impl World {
-    /// How many faces an object has: triangles of its meshes, and faces of its other parts.
+    /// How many faces an object has: triangles of its meshes, and faces of its other parts. Of
+    /// instances, those of one copy.
     #[must_use]
     pub fn face_count(&self, object: ObjectId) -> u32 {
+        if let Some(count) = self.instances.face_count(object) {
+            return count;
+        }
         let sheet = self.sheets.faces_of(object);
         let [triangles, others] = self.solids.faces_of(object);
         let stand_in = self.solids.mesh_literals(&others);
@@ -21,6 +25,9 @@ impl World {
     /// `None` for [`FaceId::NONE`] and faces of other worlds.
     #[must_use]
     pub fn face_in_object(&self, face: FaceId) -> Option<(ObjectId, u32)> {
+        if let Some(found) = self.instances.face_in_object(face) {
+            return Some(found);
+        }
         let (object, _) = self.owner(face)?;
         if !self.solids.has(face) {
             return Some((object, face.0 - self.sheets.faces_of(object).start));
@@ -34,5 +41,12 @@ impl World {
             triangles.len() as u32 + before.len() as u32 - self.solids.mesh_literals(&before)
         };
         Some((object, number))
+    }
+
+    /// The object of a copy that a hit names ([`crate::Hit::instance`]), and which of that object's
+    /// copies it is, from 0; `None` for 0 and numbers without a copy.
+    #[must_use]
+    pub fn instance(&self, instance: u32) -> Option<(ObjectId, u32)> {
+        self.instances.number_in_object(instance)
     }
 }

@@ -23,8 +23,10 @@ pub struct MemoryStats {
     pub triangles: u64,
     /// Cells over triangles, with the lists of triangles in them.
     pub triangle_cells: u64,
-    /// The octrees with wide nodes over triangles.
+    /// The octrees with wide nodes over triangles, and the corners that stand with them.
     pub wide_trees: u64,
+    /// The octree with wide nodes over copies of prototypes; the copies' transforms are the scene's.
+    pub instances: u64,
     /// The most bytes that cells and their contents took while they were built, with what building
     /// keeps beside them.
     pub building: u64,
@@ -42,6 +44,20 @@ impl MemoryStats {
             + self.triangles
             + self.triangle_cells
             + self.wide_trees
+            + self.instances
+    }
+
+    /// With what a prototype takes.
+    fn add(&mut self, prototype: &Self) {
+        self.cells += prototype.cells;
+        self.contents += prototype.contents;
+        self.expressions += prototype.expressions;
+        self.surfaces += prototype.surfaces;
+        self.faces += prototype.faces;
+        self.triangles += prototype.triangles;
+        self.triangle_cells += prototype.triangle_cells;
+        self.wide_trees += prototype.wide_trees;
+        self.building = self.building.max(prototype.building);
     }
 }
 
@@ -138,8 +154,13 @@ impl World {
         memory.triangles += triangles.bytes();
         memory.triangle_cells += triangles.cell_bytes();
         memory.wide_trees += triangles.tree_stats().map_or(0, |stats| stats.bytes);
+        memory.wide_trees += triangles.packed_bytes();
         if let Some(cells) = triangles.partition().map(|cells| &cells.stats().cells) {
             memory.building = memory.building.max(cells.peak_bytes);
+        }
+        memory.instances = self.instances.tree().map_or(0, |tree| tree.stats().bytes);
+        for prototype in self.instances.prototypes() {
+            memory.add(&prototype.memory());
         }
         memory
     }

@@ -10,12 +10,20 @@ use crate::sheets::SheetHit;
 use crate::solids::Interface;
 use crate::{Hit, RayQuery, Region, SurfaceHit, World};
 
+/// Where there is no surface.
+const NOWHERE: TrianglePoint = TrianglePoint {
+    normal: DVec3::Z,
+    shading_normal: None,
+    texcoord: None,
+};
+
 impl Interface {
     /// A triangle as an interface; the regions are not known yet.
     pub(crate) const fn of_sheet(hit: &SheetHit) -> Self {
         Self {
             s: hit.s,
             face: hit.face,
+            instance: 0,
             entering: hit.entering,
             from: Region::OUTSIDE,
             to: Region::OUTSIDE,
@@ -26,7 +34,7 @@ impl Interface {
         Hit {
             t: line.t(self.s),
             face: self.face,
-            instance: 0,
+            instance: self.instance,
             entering: self.entering,
             from: self.from,
             to: self.to,
@@ -42,6 +50,7 @@ impl World {
         self.sheets
             .owner(face, scene)
             .or_else(|| self.solids.owner(face, scene))
+            .or_else(|| self.instances.owner(face, scene))
     }
 
     /// Position, normals and materials of a hit of `query`.
@@ -52,25 +61,17 @@ impl World {
         let position = query.ray.at(hit.t);
         let (object, material) = self.owner(hit.face).unwrap_or((ObjectId(0), MaterialId(0)));
         let line = self.line(query, false);
-        let triangle = line
-            .as_ref()
-            .and_then(|line| self.sheets.point(line, hit.face));
-        let is_sheet = triangle.is_some();
-        let of_solid = || {
-            line.as_ref().and_then(|line| {
-                let in_scene = self.place.scene_from_world(position);
-                self.solids.point(line, hit.face, hit.entering, in_scene)
-            })
-        };
+        let face = (hit.instance, hit.face, hit.entering);
+        let point = line.and_then(|line| {
+            let in_scene = self.place.scene_from_world(position);
+            self.point(&line, face, in_scene)
+        });
+        let is_sheet = point.is_some_and(|(_, is_sheet)| is_sheet);
         let TrianglePoint {
             normal,
             shading_normal,
             texcoord,
-        } = triangle.or_else(of_solid).unwrap_or(TrianglePoint {
-            normal: DVec3::Z,
-            shading_normal: None,
-            texcoord: None,
-        });
+        } = point.map_or(NOWHERE, |(point, _)| point);
         let shading_normal = match shading_normal {
             // On the same side as the face: seen from in front, a surface must not be lit from behind.
             Some(n) if n.dot(normal) > 0.0 => n,
@@ -104,6 +105,35 @@ impl World {
             }
         }
         surface
+    }
+
+    /// The normal of a hit of `query`, as [`World::interact`] has it, for less.
+    #[must_use]
+    pub fn normal(&self, query: &RayQuery, hit: &Hit) -> DVec3 {
+        let of_sheet = if hit.instance == 0 {
+            self.sheets.normal(hit.face)
+        } else {
+            None
+        };
+        of_sheet.unwrap_or_else(|| self.interact(query, hit).normal)
+    }
+
+    /// Shading data of a face (of which copy, and whether it is entered) that the line crosses at a
+    /// position in the scene's coordinates, and whether it is a triangle of a sheet.
+    pub(crate) fn point(
+        &self,
+        line: &Line,
+        (instance, face, entering): (u32, FaceId, bool),
+        position: DVec3,
+    ) -> Option<(TrianglePoint, bool)> {
+        if instance != 0 {
+            return (self.instances).point(line, (instance, face, entering), position);
+        }
+        let of_sheet = self.sheets.point(line, face).map(|point| (point, true));
+        of_sheet.or_else(|| {
+            let point = self.solids.point(line, face, entering, position)?;
+            Some((point, false))
+        })
     }
 
     /// What fills a region.

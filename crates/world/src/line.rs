@@ -9,11 +9,16 @@ use crate::{Departure, RayQuery};
 /// The bits of a positive number that say its power of two.
 const EXPONENT_BITS: u64 = 0x7ff0_0000_0000_0000;
 
+/// More than a few roundings.
+const LIMIT_ROUNDING: f64 = 1.0 / (1u64 << 49) as f64;
+
 /// Where the scene is: the coordinates it is worked on in, and its centre in them.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Place {
     pub(crate) frame: SceneFrame,
     center: DVec3,
+    /// A 256th of the power of two below the scene's size.
+    step: f64,
 }
 
 impl Place {
@@ -23,7 +28,7 @@ impl Place {
             let solids = match &object.shape {
                 Shape::Solid(solid) => [Some(solid), None],
                 Shape::Sheet(Sheet::Shell { solid, clip }) => [Some(solid), Some(clip)],
-                Shape::Sheet(Sheet::Mesh { .. }) => [None, None],
+                Shape::Sheet(Sheet::Mesh { .. }) | Shape::Instances(_) => [None, None],
             };
             let bounds = object.shape.bounds();
             let unbounded = !bounds.is_empty() && !bounds.is_bounded();
@@ -36,17 +41,21 @@ impl Place {
         } else {
             bounds.center() - frame.origin
         };
-        Self { frame, center }
+        Self {
+            frame,
+            center,
+            step: libm::ldexp(1.0, libm::ilogb(frame.size) - 8),
+        }
     }
 
     /// `shift` to within a 512th of the scene's size, as a short number: a line whose coordinates
     /// are short numbers then has an exact origin, and crosses the planes that meet in an edge at
     /// one parameter if it goes through the edge.
+    #[inline]
     fn short(&self, shift: f64) -> f64 {
-        let step = libm::ldexp(1.0, libm::ilogb(self.frame.size) - 8);
-        let steps = libm::rint(shift / step);
+        let steps = (shift / self.step).round_ties_even();
         if steps.is_finite() {
-            steps * step
+            steps * self.step
         } else {
             shift
         }
@@ -78,12 +87,18 @@ pub(crate) struct Line {
 }
 
 /// The direction divided by the power of two below its largest component, and that power.
+#[inline]
 fn scaled(direction: DVec3, largest: f64) -> (DVec3, f64) {
-    // The same as below, for lengths whose powers are normal numbers.
     if (1e-300..1e300).contains(&largest) {
         let power = f64::from_bits(largest.to_bits() & EXPONENT_BITS);
         return (direction * power.recip(), power);
     }
+    scaled_far(direction, largest)
+}
+
+/// The same for directions whose power of two, or its reciprocal, is no normal number.
+#[cold]
+fn scaled_far(direction: DVec3, largest: f64) -> (DVec3, f64) {
     let exponent = libm::ilogb(largest);
     let scaled = direction.to_array().map(|x| libm::ldexp(x, -exponent));
     (DVec3::from_array(scaled), libm::ldexp(1.0, exponent))
@@ -91,6 +106,7 @@ fn scaled(direction: DVec3, largest: f64) -> (DVec3, f64) {
 
 impl Line {
     /// `None` for a ray with a NaN, an infinity or no direction: it meets nothing.
+    #[inline]
     pub(crate) fn new(query: &RayQuery, place: &Place) -> Option<Self> {
         let Ray { origin, direction } = query.ray;
         let largest = direction.abs().max_element();
@@ -131,6 +147,40 @@ impl Line {
     pub(crate) const fn beyond(mut self, s: f64) -> Self {
         self.origin = s;
         self
+    }
+
+    /// The same line seen from a prototype's coordinates, where it is `ray` with the parameters of
+    /// this line.
+    pub(crate) fn seen_as(&self, ray: Ray, place: &Place, departure: Departure) -> Option<Self> {
+        let query = RayQuery {
+            ray,
+            t_max: self.end,
+            departure,
+        };
+        let mut line = Self::new(&query, place)?;
+        line.origin = line.inner(self.origin);
+        Some(line)
+    }
+
+    /// The parameter of the line that this one was seen from.
+    pub(crate) fn outer(&self, s: f64) -> f64 {
+        // There is one zero.
+        (s + self.shift) / self.scale + 0.0
+    }
+
+    /// The parameter on this line, given that on the line it was seen from.
+    pub(crate) fn inner(&self, s: f64) -> f64 {
+        s * self.scale - self.shift
+    }
+
+    /// A parameter not before any that is at most `s` on the line this one was seen from.
+    pub(crate) fn inner_limit(&self, s: f64) -> f64 {
+        let limit = self.inner(s);
+        if limit.is_finite() {
+            limit + ((s * self.scale).abs() + self.shift.abs() + limit.abs()) * LIMIT_ROUNDING
+        } else {
+            limit
+        }
     }
 
     /// The user's parameter. On a half-line it is 0 where that begins to count and never negative:

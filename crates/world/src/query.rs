@@ -38,9 +38,11 @@ impl Region {
 pub struct Departure {
     /// [`FaceId::NONE`] for a ray that starts in the open.
     pub face: FaceId,
-    /// Instance of the face.
+    /// As [`Hit::instance`].
     pub instance: u32,
-    /// Whether the ray goes to the side that the face's outward normal points to.
+    /// Whether the ray goes to the side that the face's outward normal points to. It must agree with the
+    /// ray's direction: which crossing is removed is undefined where it does not, and may then be
+    /// another one with the same sense, farther along the ray.
     pub outward: bool,
 }
 
@@ -83,11 +85,13 @@ pub struct Hit {
     pub t: f64,
     /// [`FaceId::NONE`] for a miss.
     pub face: FaceId,
-    /// Instance of the face.
+    /// Which copy the face is of, among all copies of the scene, from 1; 0 where the object is not
+    /// made of instances. See [`crate::World::instance`].
     pub instance: u32,
     /// Whether the ray comes from the side that the face's outward normal points to.
     pub entering: bool,
-    /// Where the ray is before the hit.
+    /// Where the ray is before the hit. (Where no material lets light through, sheets and copies do
+    /// not look for the solids around them.)
     pub from: Region,
     /// Where it is behind. For a sheet the same as `from`.
     pub to: Region,
@@ -166,6 +170,8 @@ pub struct Counters {
     pub triangle_tests: u64,
     /// Triangles not intersected again, because the ray had met them in an earlier cell.
     pub mailbox: u64,
+    /// Copies of prototypes that a line was taken into.
+    pub instances: u64,
 }
 
 impl Counters {
@@ -181,6 +187,12 @@ impl Counters {
         self.mailbox += cost.mailbox;
     }
 
+    /// The walk over the boxes of copies.
+    pub(crate) fn add_instances(&mut self, cost: &WalkCost) {
+        self.nodes += cost.nodes;
+        self.instances += cost.items;
+    }
+
     /// The part of one of so many: together they are the whole.
     pub(crate) fn share(&self, index: usize, of: usize) -> Self {
         let (index, of) = (index as u64, of as u64);
@@ -193,6 +205,7 @@ impl Counters {
             nodes: part(self.nodes),
             surface_tests: part(self.surface_tests),
             triangle_tests: part(self.triangle_tests),
+            instances: part(self.instances),
         }
     }
 }
@@ -206,5 +219,6 @@ impl std::ops::AddAssign for Counters {
         self.surface_tests += other.surface_tests;
         self.triangle_tests += other.triangle_tests;
         self.mailbox += other.mailbox;
+        self.instances += other.instances;
     }
 }

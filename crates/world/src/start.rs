@@ -6,10 +6,10 @@
 //! counts as behind that is no farther from the start than that. Where the ray grazes a surface it
 //! cannot be told at all; there the parameter decides, as it does everywhere else.
 
-use octray_geometry::FaceId;
 use octray_math::DVec3;
 
 use crate::line::Line;
+use crate::solids::Interface;
 use crate::{Departure, World};
 
 /// How many rounding errors of its coordinates a start may be off the surface that it lies on.
@@ -18,9 +18,9 @@ const ROUNDINGS: f64 = 8.0;
 const FLATTEST: f64 = 1.0 / (1u64 << 20) as f64;
 
 impl World {
-    /// Whether the line starts on a face that it crosses at `s`, ahead of its start.
-    pub(crate) fn starts_on(&self, line: &Line, s: f64, face: FaceId, entering: bool) -> bool {
-        let ahead = s - line.start();
+    /// Whether the line starts on a boundary that it crosses ahead of its start.
+    pub(crate) fn starts_on(&self, line: &Line, found: &Interface) -> bool {
+        let ahead = found.s - line.start();
         // The line's start is a point of the ray: no farther from the centre than this.
         let size = self.place.frame.size + line.start().abs();
         let rounding = ROUNDINGS * f64::EPSILON * size;
@@ -34,14 +34,10 @@ impl World {
             return true;
         }
         let start = line.ray.at(line.start());
-        let normal = self.normal_of(line, face, entering, start);
+        let face = (found.instance, found.face, found.entering);
+        let point = self.point(line, face, start);
+        let normal = point.map_or(DVec3::ZERO, |(point, _)| point.normal);
         let climb = normal.dot(line.ray.direction).abs();
         climb >= FLATTEST && ahead * climb <= rounding
-    }
-
-    fn normal_of(&self, line: &Line, face: FaceId, entering: bool, at: DVec3) -> DVec3 {
-        let triangle = self.sheets.point(line, face);
-        let point = triangle.or_else(|| self.solids.point(line, face, entering, at));
-        point.map_or(DVec3::ZERO, |point| point.normal)
     }
 }

@@ -1,5 +1,8 @@
 //! What the surface table made of a scene, for whoever wants to know before rays are shot.
 
+use std::collections::HashSet;
+use std::sync::Arc;
+
 use octray_geometry::csg::{Face, LoweredScene, Lowering};
 use octray_geometry::surface::{NEAR, Surface};
 use octray_geometry::{SceneFrame, Sheet};
@@ -9,7 +12,8 @@ use octray_scene::{ObjectId, Scene, Shape};
 use crate::WorldError;
 use crate::world::check_face_count;
 
-/// The surfaces of a scene's solids: which were taken for one, and which nearly were.
+/// The surfaces of a scene's solids: which were taken for one, and which nearly were. Those of
+/// prototypes are compared among themselves, by a tolerance of their own.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SurfaceReport {
     /// Distinct surfaces, triangles not counted.
@@ -34,7 +38,7 @@ pub struct NearCoincidence {
     /// How far they are apart at most within the scene's size.
     pub gap: f64,
     /// The point of the first plane that is nearest to the middle of its object, or the centre of
-    /// the first curved surface.
+    /// the first curved surface. Of instances, in the coordinates of their prototype.
     pub position: DVec3,
 }
 
@@ -52,7 +56,7 @@ impl SurfaceReport {
             let solids = match &object.shape {
                 Shape::Solid(solid) => [Some(solid), None],
                 Shape::Sheet(Sheet::Shell { solid, clip }) => [Some(solid), Some(clip)],
-                Shape::Sheet(Sheet::Mesh { .. }) => [None, None],
+                Shape::Sheet(Sheet::Mesh { .. }) | Shape::Instances(_) => [None, None],
             };
             for solid in solids.into_iter().flatten() {
                 // Only the surfaces are of interest, not the expression.
@@ -85,13 +89,36 @@ impl SurfaceReport {
                 }
             })
             .collect();
-        Ok(Self {
+        let mut report = Self {
             surfaces: surfaces.len(),
             merged,
             tolerance: tolerance * frame.size,
             near: NEAR * frame.size,
             pairs,
-        })
+        };
+        report.add_prototypes(scene)?;
+        Ok(report)
+    }
+
+    /// Adds the surfaces of prototypes, which have a table of their own each.
+    fn add_prototypes(&mut self, scene: &Scene) -> Result<(), WorldError> {
+        let mut known: HashSet<*const Scene> = HashSet::new();
+        for (index, object) in scene.objects().iter().enumerate() {
+            let Shape::Instances(instances) = &object.shape else {
+                continue;
+            };
+            let parts = instances.prototype().parts();
+            if known.insert(Arc::as_ptr(parts)) {
+                let own = Self::new(parts)?;
+                self.surfaces += own.surfaces;
+                self.merged += own.merged;
+                let objects = [ObjectId(index as u32); 2];
+                let pairs = own.pairs.into_iter();
+                self.pairs
+                    .extend(pairs.map(|pair| NearCoincidence { objects, ..pair }));
+            }
+        }
+        Ok(())
     }
 }
 

@@ -1,6 +1,5 @@
 //! The world and its queries.
 
-use std::cell::Cell;
 use std::sync::{Arc, Mutex, PoisonError};
 
 use octray_geometry::FaceId;
@@ -12,12 +11,13 @@ use octray_tree::{
 };
 use thiserror::Error;
 
+use crate::instances::Instances;
 use crate::line::{Line, Place};
-use crate::sheets::{SheetHit, Sheets};
+use crate::sheets::Sheets;
 use crate::solids::{Interface, Scratch, Solids};
 use crate::{
-    CellList, CellListError, CellsOf, Counters, Hit, MarkingStats, MemoryStats, Method, RayQuery,
-    Region,
+    CellList, CellListError, CellsOf, Counters, Departure, Hit, MarkingStats, MemoryStats, Method,
+    RayQuery,
 };
 
 /// How to prepare a world.
@@ -47,6 +47,9 @@ pub enum WorldError {
     /// The octree over the triangles of sheets would be too large.
     #[error(transparent)]
     Triangles(#[from] WideTreeError),
+    /// The octree over the copies would be too large.
+    #[error("instances: {0}")]
+    Instances(WideTreeError),
     /// The list of cells cannot be used.
     #[error(transparent)]
     Cells(#[from] CellListError),
@@ -61,9 +64,12 @@ pub struct World {
     pub(crate) scene: Arc<Scene>,
     pub(crate) solids: Solids,
     pub(crate) sheets: Sheets,
+    pub(crate) instances: Instances,
     pub(crate) place: Place,
     /// For each material whether no light passes it.
     opaque: Vec<bool>,
+    /// Whether every boundary is seen and stops light.
+    all_blocks: bool,
     pub(crate) scratch: ScratchPool,
 }
 
@@ -76,10 +82,16 @@ pub struct WorldStats {
     pub surfaces: usize,
     /// Faces that turned out to lie on another face's surface.
     pub merged_surfaces: usize,
-    /// Faces of solids and triangles.
+    /// Faces of solids and triangles; of instances, those of one copy.
     pub faces: usize,
-    /// Triangles of sheets.
+    /// Triangles of sheets; of instances, those of one copy.
     pub triangles: usize,
+    /// Copies of prototypes.
+    pub instances: usize,
+    /// What they are copies of.
+    pub prototypes: usize,
+    /// The octree with wide nodes over the copies.
+    pub instance_tree: Option<WideTreeStats>,
     /// The cells over the solids.
     pub cells: Option<PartitionStats>,
     /// How many objects the occupied cells over solids hold.
@@ -156,18 +168,26 @@ impl World {
         let place = Place::new(&scene);
         let solids = Solids::prepare(&scene, &place.frame, config, list, triangles)?;
         let sheets = Sheets::prepare(&scene, &place.frame, solids.face_count(), config)?;
-        let opaque = scene
+        let own_faces = solids.face_count() + sheets.triangle_count() as u32;
+        let instances = Instances::prepare(&scene, &place.frame, own_faces, config)?;
+        let opaque: Vec<bool> = scene
             .materials()
             .iter()
             .map(|m| !m.pigment.is_transparent())
             .collect();
+        let all_blocks = solids.shows_all()
+            && instances.is_empty()
+            && !opaque.contains(&false)
+            && scene.objects().iter().all(|object| object.casts_shadows);
         let scratch = ScratchPool::default();
         Ok(Self {
             scene,
             solids,
             sheets,
+            instances,
             place,
             opaque,
+            all_blocks,
             scratch,
         })
     }
@@ -194,12 +214,24 @@ impl World {
     #[must_use]
     pub fn stats(&self) -> WorldStats {
         let triangles = self.sheets.triangles();
+        let with_prototypes = |figure: &dyn Fn(&Self) -> usize| -> usize {
+            figure(self)
+                + self
+                    .instances
+                    .prototypes()
+                    .iter()
+                    .map(figure)
+                    .sum::<usize>()
+        };
         WorldStats {
             objects: self.scene.objects().len(),
-            surfaces: self.solids.surface_count(),
-            merged_surfaces: self.solids.merged_surfaces(),
-            faces: self.solids.face_count() as usize + self.sheets.triangle_count(),
-            triangles: self.sheets.triangle_count(),
+            surfaces: with_prototypes(&|world| world.solids.surface_count()),
+            merged_surfaces: with_prototypes(&|world| world.solids.merged_surfaces()),
+            faces: with_prototypes(&|world| world.own_face_count() as usize),
+            triangles: with_prototypes(&|world| world.sheets.triangle_count()),
+            instances: self.instances.len() as usize,
+            prototypes: self.instances.prototypes().len(),
+            instance_tree: self.instances.tree().map(|tree| *tree.stats()),
             cells: self.solids.partition().map(|cells| cells.stats().clone()),
             objects_per_leaf: self.objects_per_leaf(CellsOf::Solids),
             marking: self.solids.marking().copied(),
@@ -212,10 +244,11 @@ impl World {
     }
 
     /// The built structures as words: equal for equal scenes, whatever built them.
-    pub fn words(&self) -> impl Iterator<Item = u32> + '_ {
-        self.solids
-            .words()
-            .chain(self.sheets.triangles().tree_words())
+    pub fn words(&self) -> Box<dyn Iterator<Item = u32> + '_> {
+        let own = self.solids.words();
+        let sheets = self.sheets.triangles().tree_words();
+        // Prototypes are worlds, so that this is found within itself.
+        Box::new(own.chain(sheets).chain(self.instances.words()))
     }
 
     pub(crate) fn closest_one(
@@ -241,7 +274,7 @@ impl World {
         loop {
             match self.nearest(&line, scratch, counters) {
                 None => return Hit::MISS,
-                Some(found) if self.starts_on(&line, found.s, found.face, found.entering) => {
+                Some(found) if self.starts_on(&line, &found) => {
                     line = line.beyond(found.s);
                 }
                 Some(found) => return found.into_hit(&line),
@@ -255,13 +288,38 @@ impl World {
         scratch: &mut Scratch,
         counters: &mut Counters,
     ) -> Option<Interface> {
+        let own = self.nearest_own(line, f64::INFINITY, scratch, counters);
+        if !self.instances.is_empty() {
+            return self.nearest_with_copies(line, own, scratch, counters);
+        }
+        let found = own?;
+        // Which space a sheet stands in matters only where light bends or fades.
+        if self.has_transparency() && !self.solids.has(found.face) {
+            let region = self.solids.region_at(line, found.s, scratch, counters);
+            return Some(Interface {
+                from: region,
+                to: region,
+                ..found
+            });
+        }
+        Some(found)
+    }
+
+    /// The nearest boundary up to `limit`, copies aside; for a triangle of a sheet without regions.
+    pub(crate) fn nearest_own(
+        &self,
+        line: &Line,
+        limit: f64,
+        scratch: &mut Scratch,
+        counters: &mut Counters,
+    ) -> Option<Interface> {
         let mut best: Option<Interface> = None;
         let nearer = |s: f64, face: FaceId, best: &Option<Interface>| {
             s < line.end && best.is_none_or(|b| s < b.s || (s == b.s && face < b.face))
         };
-        let limit_of = |best: &Option<Interface>| best.map_or(f64::INFINITY, |b| b.s);
+        let limit_of = |best: &Option<Interface>| best.map_or(limit, |b| b.s);
         self.solids
-            .sweep_line(line, f64::INFINITY, scratch, counters, |change| {
+            .sweep_forward(line, limit, scratch, counters, |change| {
                 if let Some(found) = change.interface()
                     && nearer(found.s, found.face, &best)
                 {
@@ -269,34 +327,40 @@ impl World {
                 }
                 limit_of(&best)
             });
-        let mut sheet: Option<SheetHit> = None;
-        self.sheets.visit_line(
-            line,
-            limit_of(&best),
-            &mut scratch.triangles,
-            counters,
-            |found| {
-                let known = sheet.map_or(best, |hit| Some(Interface::of_sheet(&hit)));
-                if nearer(found.s, found.face, &known) {
-                    sheet = Some(*found);
-                }
-                sheet.map_or(limit_of(&best), |hit| hit.s)
-            },
-        );
-        if let Some(hit) = sheet {
-            // Which space a sheet stands in matters only where light bends or fades.
-            let region = if self.has_transparency() {
-                self.solids.region_at(line, hit.s, scratch, counters)
-            } else {
-                Region::OUTSIDE
-            };
-            best = Some(Interface {
-                from: region,
-                to: region,
-                ..Interface::of_sheet(&hit)
+        let sheet = self
+            .sheets
+            .nearest(line, limit_of(&best), &mut scratch.triangles, counters)
+            .filter(|hit| nearer(hit.s, hit.face, &best));
+        sheet.map_or(best, |hit| Some(Interface::of_sheet(&hit)))
+    }
+
+    /// Visits all boundaries but those of copies, sheets first, in no order. `visit` returns the
+    /// parameter beyond which nothing matters any more. Near the faces of cells some come twice.
+    pub(crate) fn visit_own(
+        &self,
+        line: &Line,
+        limit: f64,
+        scratch: &mut Scratch,
+        counters: &mut Counters,
+        mut visit: impl FnMut(&Interface) -> f64,
+    ) {
+        let mut limit = limit;
+        let memory = &mut scratch.triangles;
+        self.sheets
+            .visit_line(line, limit, memory, counters, |hit| {
+                limit = visit(&Interface::of_sheet(hit));
+                limit
             });
+        if limit == f64::NEG_INFINITY {
+            return;
         }
-        best
+        self.solids
+            .sweep_forward(line, limit, scratch, counters, |change| {
+                if let Some(found) = change.interface() {
+                    limit = visit(&found);
+                }
+                limit
+            });
     }
 
     /// Whether any of the faces that count lies on the ray.
@@ -320,33 +384,35 @@ impl World {
         scratch: &mut Scratch,
         counters: &mut Counters,
     ) -> bool {
-        let found = Cell::new(false);
-        // Returns the parameter beyond which nothing matters any more.
-        let visit = |s: f64, face: FaceId, entering: bool| {
-            let counts = s < line.end && counts(face) && !self.starts_on(line, s, face, entering);
-            found.set(found.get() || counts);
-            if found.get() {
+        if self.instances.hide() {
+            let mut hits = Vec::new();
+            self.add_crossings(line, scratch, &mut hits, counters);
+            return hits.iter().any(|hit| counts(hit.face));
+        }
+        let mut met = false;
+        // Where a departure says what lies behind, every change ahead counts.
+        if self.all_blocks && line.departure != Departure::NONE {
+            let memory = &mut scratch.triangles;
+            self.sheets
+                .visit_line(line, f64::INFINITY, memory, counters, |hit| {
+                    met |= hit.s < line.end;
+                    if met {
+                        f64::NEG_INFINITY
+                    } else {
+                        f64::INFINITY
+                    }
+                });
+            return met || self.solids.changes(line, scratch, counters);
+        }
+        self.visit_own(line, f64::INFINITY, scratch, counters, |found| {
+            met |= found.s < line.end && counts(found.face) && !self.starts_on(line, found);
+            if met {
                 f64::NEG_INFINITY
             } else {
                 f64::INFINITY
             }
-        };
-        self.sheets.visit_line(
-            line,
-            f64::INFINITY,
-            &mut scratch.triangles,
-            counters,
-            |hit| visit(hit.s, hit.face, hit.entering),
-        );
-        if !found.get() {
-            self.solids
-                .sweep_line(line, f64::INFINITY, scratch, counters, |change| {
-                    change
-                        .interface()
-                        .map_or(f64::INFINITY, |i| visit(i.s, i.face, i.entering))
-                });
-        }
-        found.get()
+        });
+        met || (!self.instances.is_empty() && self.line_meets_copy(line, counts, scratch, counters))
     }
 
     /// Whether a face stops light.
@@ -400,18 +466,22 @@ impl World {
                 f64::INFINITY
             },
         );
-        for sheet in &mut found[first_sheet..] {
-            let region = self.solids.region_at(line, sheet.s, scratch, counters);
-            (sheet.from, sheet.to) = (region, region);
+        if self.instances.is_empty() {
+            for sheet in &mut found[first_sheet..] {
+                let region = self.solids.region_at(line, sheet.s, scratch, counters);
+                (sheet.from, sheet.to) = (region, region);
+            }
+        } else {
+            self.add_copies(line, &mut found, scratch, counters);
         }
         found.retain(|f| f.s < line.end);
-        found.sort_by(|a, b| a.s.total_cmp(&b.s).then(a.face.cmp(&b.face)));
+        found.sort_by(|a, b| {
+            let copies = (a.instance, a.face).cmp(&(b.instance, b.face));
+            a.s.total_cmp(&b.s).then(copies)
+        });
         // Cells overlap a little: what lies there was found twice.
-        found.dedup_by_key(|f| (f.s, f.face));
-        let behind = found
-            .iter()
-            .take_while(|f| self.starts_on(line, f.s, f.face, f.entering))
-            .count();
+        found.dedup_by_key(|f| (f.s, f.instance, f.face));
+        let behind = found.iter().take_while(|f| self.starts_on(line, f)).count();
         hits.extend(found.drain(behind..).map(|f| f.into_hit(line)));
     }
 
@@ -431,14 +501,18 @@ impl World {
 
 /// Whether the faces have ids enough, by an upper bound of their number.
 pub(crate) fn check_face_count(scene: &Scene) -> Result<(), WorldError> {
-    let faces = scene.objects().iter().fold(0, |sum: u64, object| {
-        sum.saturating_add(match &object.shape {
-            Shape::Solid(solid) => solid.faces(),
-            Shape::Sheet(sheet) => sheet.faces(),
-        })
-    });
-    if faces > 1 << 30 {
+    if faces(scene) > 1 << 30 {
         return Err(WorldError::TooManyFaces);
     }
     Ok(())
+}
+
+fn faces(scene: &Scene) -> u64 {
+    scene.objects().iter().fold(0, |sum: u64, object| {
+        sum.saturating_add(match &object.shape {
+            Shape::Solid(solid) => solid.faces(),
+            Shape::Sheet(sheet) => sheet.faces(),
+            Shape::Instances(instances) => faces(instances.prototype().parts()),
+        })
+    })
 }

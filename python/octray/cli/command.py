@@ -17,6 +17,7 @@ if TYPE_CHECKING:
 COMMANDS = {
     "render": "Render a scene or mesh file to a picture.",
     "lab": "Compare the methods on a scene: time, memory, work per ray.",
+    "bench": "Race the other ray tracers that are installed.",
     "query": "Answer where rays go: hits, intervals, counts, points inside.",
     "info": "Print what is in a scene or mesh file.",
     "doctor": "Check this installation and render a tiny scene.",

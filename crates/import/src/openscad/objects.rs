@@ -81,7 +81,7 @@ impl Lowering<'_> {
             None => (self.palette.surface(&mut self.builder), false),
         };
         self.builder.add_object(Object {
-            name,
+            name: name.into(),
             shape,
             material,
             // Opaque things show inside of clear ones.

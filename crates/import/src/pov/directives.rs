@@ -192,8 +192,13 @@ impl Reader<'_> {
         let mut depth = 0_usize;
         if let Some(frame) = self.frames.last_mut() {
             while frame.at < frame.end {
-                let token = &frame.tokens[frame.at];
-                frame.at += 1;
+                let (token, next) = frame.tape.token(frame.at, &mut self.words);
+                if token.kind == Kind::End {
+                    break;
+                }
+                self.ahead_at = frame.at;
+                frame.at = next;
+                self.steps += 1;
                 let Kind::Directive(name) = &token.kind else {
                     continue;
                 };
@@ -211,10 +216,10 @@ impl Reader<'_> {
         self.fail(span, "this has no `#end`")
     }
 
-    /// The index of the `#end` that closes what begins here; goes on behind it.
+    /// The place of the `#end` that closes what begins here; goes on behind it.
     pub(super) fn skip_body(&mut self, span: Span) -> Parsed<usize> {
         self.skip_to(&[], span)?;
-        Ok(self.frames.last().map_or(0, |frame| frame.at - 1))
+        Ok(self.ahead_at)
     }
 
     fn switch(&mut self, span: Span) -> Parsed<()> {

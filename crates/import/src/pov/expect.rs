@@ -8,7 +8,7 @@ use super::reader::{Parsed, Reader};
 impl Reader<'_> {
     /// Whether the next token is this sign.
     pub(super) fn at(&mut self, sign: &str) -> bool {
-        self.peek().is(sign)
+        self.look().is(sign)
     }
 
     /// Takes the sign if it is next.
@@ -21,22 +21,22 @@ impl Reader<'_> {
     }
 
     pub(super) fn expect(&mut self, sign: &str) -> Parsed<Token> {
-        let token = self.peek();
-        if token.is(sign) {
+        if self.at(sign) {
             return Ok(self.next());
         }
+        let token = self.peek();
         let found = token.describe();
         self.fail(token.span, format!("expected `{sign}`, found {found}"))
     }
 
     /// The next token's word, left in place.
     pub(super) fn peek_word(&mut self) -> Option<Rc<str>> {
-        self.peek().word().cloned()
+        self.look().word().cloned()
     }
 
     /// Takes the word if it is next.
     pub(super) fn eat_word(&mut self, word: &str) -> bool {
-        let found = self.peek().word().is_some_and(|w| &**w == word);
+        let found = self.look().word().is_some_and(|w| &**w == word);
         if found {
             self.next();
         }
@@ -58,7 +58,7 @@ impl Reader<'_> {
         let held = std::mem::take(&mut self.hold);
         let result = self.nested(|r| {
             loop {
-                let token = r.peek();
+                let token = r.look();
                 if token.is("}") {
                     return Ok(());
                 }

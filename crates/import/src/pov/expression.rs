@@ -29,7 +29,7 @@ impl Reader<'_> {
 
     /// A number.
     pub(super) fn float(&mut self) -> Parsed<f64> {
-        let start = self.peek().span;
+        let start = self.look().span;
         let terms = self.terms()?;
         if terms.count != 1 {
             let count = terms.count;
@@ -46,8 +46,7 @@ impl Reader<'_> {
 
     /// An optional truth value behind a keyword: `on`, `off`, a number; alone it means yes.
     pub(super) fn switch_value(&mut self) -> Parsed<bool> {
-        let token = self.peek();
-        let follows = match &token.kind {
+        let follows = match &self.look().kind {
             Kind::Number(_) => true,
             Kind::Word(word) => matches!(&**word, "on" | "off" | "yes" | "no" | "true" | "false"),
             _ => false,
@@ -61,14 +60,13 @@ impl Reader<'_> {
             None => self.unary()?,
         };
         loop {
-            let token = self.peek();
-            let Kind::Sign(sign) = token.kind else {
+            let Kind::Sign(sign) = self.look().kind else {
                 return Ok(left);
             };
             let Some(level) = level(sign).filter(|level| *level >= lowest) else {
                 return Ok(left);
             };
-            self.next();
+            let token = self.next();
             if level == CONDITIONAL {
                 let yes = self.expression()?;
                 self.expect(":")?;
@@ -85,8 +83,7 @@ impl Reader<'_> {
     }
 
     fn unary(&mut self) -> Parsed<Terms> {
-        let token = self.peek();
-        match token.kind {
+        match self.look().kind {
             Kind::Sign("-") => {
                 self.next();
                 let operand = self.nested(|r| {
@@ -142,12 +139,12 @@ impl Reader<'_> {
     }
 
     fn primary(&mut self) -> Parsed<Terms> {
+        if let Kind::Number(value) = self.look().kind {
+            self.next();
+            return Ok(Terms::number(value));
+        }
         let token = self.peek();
         match &token.kind {
-            Kind::Number(value) => {
-                self.next();
-                Ok(Terms::number(*value))
-            }
             Kind::Sign("(") => {
                 self.next();
                 let value = self.expression()?;
@@ -169,6 +166,12 @@ impl Reader<'_> {
             count: 0,
             v: [0.0; 5],
         };
+        if let Some(count) = self.plain_vector(&mut value.v) {
+            self.next();
+            value.count = count;
+            return Ok(value);
+        }
+        value.v = [0.0; 5];
         while !self.eat(">") {
             if value.count == 5 {
                 return self.fail(open.span, "a vector has at most 5 components");
@@ -176,7 +179,7 @@ impl Reader<'_> {
             let item = self.float()?;
             value.v[value.count] = item;
             value.count += 1;
-            if !self.eat(",") && !self.at(">") && !starts_value(&self.peek()) {
+            if !self.eat(",") && !self.at(">") && !starts_value(self.look()) {
                 return self.expect(">").map(|_| value);
             }
         }

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use super::lexer;
+use super::lexer::Tape;
 use super::reader::{Parsed, Reader};
 use super::standard::{self, Standard};
 use crate::Span;
@@ -36,13 +36,13 @@ impl Reader<'_> {
 
     /// Registers a source and goes on at its beginning, with a table of local names of its own.
     pub(super) fn open_source(&mut self, path: &Path, bytes: Vec<u8>) -> Parsed<()> {
-        // A token takes some 48 bytes and stands for at least one byte of text.
-        self.book((bytes.len() as u64).saturating_mul(16))?;
-        let source = self.diagnostics.add_source(path, bytes);
-        let tokens = lexer::tokens(&self.diagnostics, source);
-        let end = tokens.len();
+        self.book(bytes.len() as u64)?;
+        let id = self.diagnostics.add_source(path, bytes);
+        let bytes = self.diagnostics.shared_source(id);
+        let tape = Tape::Source { id, bytes };
+        let end = tape.end();
         let scopes = self.scopes.depth();
-        self.push_frame(tokens, 0, end, scopes)?;
+        self.push_frame(tape, 0, end, scopes)?;
         self.scopes.open();
         Ok(())
     }

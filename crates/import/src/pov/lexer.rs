@@ -1,10 +1,11 @@
-//! Bytes to tokens.
+//! Bytes to tokens, one at a time.
 
+use std::collections::HashSet;
+use std::ops::Range;
 use std::rc::Rc;
+use std::sync::Arc;
 
-use logos::{Lexer, Logos};
-
-use crate::{Diagnostics, SourceId, Span};
+use crate::{SourceId, Span};
 
 /// What a token is.
 #[derive(Clone, Debug, PartialEq)]
@@ -34,7 +35,9 @@ pub(super) struct Token {
 
 impl Token {
     pub(super) fn is(&self, sign: &str) -> bool {
-        matches!(&self.kind, Kind::Sign(s) if *s == sign)
+        // Nearly all are told apart by the first byte: cheaper than comparing strings.
+        matches!(&self.kind, Kind::Sign(s)
+            if s.len() == sign.len() && s.as_bytes().first() == sign.as_bytes().first())
     }
 
     pub(super) fn word(&self) -> Option<&Rc<str>> {
@@ -58,81 +61,219 @@ impl Token {
     }
 }
 
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-enum Fault {
-    #[default]
-    Character,
-    Comment,
-    Text,
+/// Every word once.
+#[derive(Debug, Default)]
+pub(super) struct Words(HashSet<Rc<str>>);
+
+impl Words {
+    fn shared(&mut self, word: &str) -> Rc<str> {
+        if let Some(known) = self.0.get(word) {
+            return Rc::clone(known);
+        }
+        let word: Rc<str> = word.into();
+        self.0.insert(Rc::clone(&word));
+        word
+    }
 }
 
-#[derive(Logos, Clone, Copy, Debug, PartialEq)]
-#[logos(error = Fault)]
-#[logos(skip r"[ \t\r\n\x0c\u{feff}]+")]
-enum Raw {
-    #[regex(r"//[^\n]*", logos::skip, allow_greedy = true)]
-    LineComment,
-    #[token("/*", block_comment)]
-    BlockComment,
-    #[regex("[A-Za-z_][A-Za-z0-9_]*")]
-    Word,
-    #[regex(r"([0-9]+\.?[0-9]*|\.[0-9]+)([eE][+-]?[0-9]+)?")]
-    Number,
-    #[token("\"", text)]
-    Text,
-    #[regex(r"#[ \t]*[A-Za-z_]+")]
-    Directive,
-    #[regex(r"[{}()\[\]<>=!&|+\-*/?:;,.^]")]
-    #[token("<=")]
-    #[token(">=")]
-    #[token("!=")]
-    Sign,
+/// What tokens are read from. A place in it is a number: reading can go on at any that was met.
+#[derive(Clone, Debug)]
+pub(super) enum Tape {
+    /// The bytes of a file: a place is an offset. Tokens are made when they are asked for, and made
+    /// again where a loop or a macro comes by again: kept, they would take twenty times the text.
+    Source { id: SourceId, bytes: Arc<Vec<u8>> },
+    /// Tokens of a function's body: a place is an index.
+    Tokens(Rc<[Token]>),
 }
 
-/// Block comments nest.
-fn block_comment(lexer: &mut Lexer<'_, Raw>) -> Result<logos::Skip, Fault> {
-    let rest = lexer.remainder().as_bytes();
-    let (mut depth, mut at) = (1, 0);
-    while at < rest.len() {
-        match &rest[at..] {
-            [b'*', b'/', ..] => {
-                (depth, at) = (depth - 1, at + 2);
-                if depth == 0 {
-                    lexer.bump(at);
-                    return Ok(logos::Skip);
-                }
-            }
-            [b'/', b'*', ..] => (depth, at) = (depth + 1, at + 2),
-            _ => at += 1,
+impl Tape {
+    /// One past the last place.
+    pub(super) fn end(&self) -> usize {
+        match self {
+            Self::Source { bytes, .. } => bytes.len(),
+            Self::Tokens(tokens) => tokens.len(),
         }
     }
-    lexer.bump(rest.len());
-    Err(Fault::Comment)
+
+    /// The token that begins at or after a place, and the place behind it; [`Kind::End`] at the
+    /// end.
+    pub(super) fn token(&self, at: usize, words: &mut Words) -> (Token, usize) {
+        match self {
+            Self::Source { id, bytes } => {
+                let (kind, range) = lex(bytes, at, words);
+                let next = range.end;
+                let span = Span::new(*id, range);
+                (Token { kind, span }, next)
+            }
+            Self::Tokens(tokens) => match tokens.get(at) {
+                Some(token) => (token.clone(), at + 1),
+                None => {
+                    let span = tokens
+                        .last()
+                        .map_or(Span::new(SourceId(0), 0..0), |t| t.span);
+                    let kind = Kind::End;
+                    (Token { kind, span }, at)
+                }
+            },
+        }
+    }
+
+    /// `number, ... >`: the plain numbers of a vector from a place on, to its closing bracket, if
+    /// nothing else stands there: how many, the place of the bracket and the one behind it. This is
+    /// what files of many numbers consist of.
+    pub(super) fn plain_vector(&self, mut at: usize, out: &mut [f64; 5]) -> Option<(usize, usize)> {
+        let Self::Source { bytes, .. } = self else {
+            return None;
+        };
+        let mut count = 0;
+        loop {
+            at = blank_end(bytes, at);
+            let negative = bytes.get(at) == Some(&b'-');
+            at = blank_end(bytes, at + usize::from(negative));
+            let end = number_end(bytes, at)?;
+            let value = number(&bytes[at..end])?;
+            *out.get_mut(count)? = if negative { -value } else { value };
+            count += 1;
+            at = blank_end(bytes, end);
+            match bytes.get(at) {
+                Some(b',') => at += 1,
+                Some(b'>') if count >= 2 && bytes.get(at + 1) != Some(&b'=') => {
+                    return Some((count, at));
+                }
+                _ => return None,
+            }
+        }
+    }
 }
 
-fn text(lexer: &mut Lexer<'_, Raw>) -> Result<(), Fault> {
-    let rest = lexer.remainder().as_bytes();
-    let mut at = 0;
-    while at < rest.len() {
-        match rest[at] {
-            b'"' => {
-                lexer.bump(at + 1);
-                return Ok(());
+/// Where the next token may begin: behind blanks and byte order marks.
+fn blank_end(bytes: &[u8], mut at: usize) -> usize {
+    loop {
+        match bytes.get(at) {
+            Some(b' ' | b'\t' | b'\r' | b'\n' | 0x0c) => at += 1,
+            Some(0xef) if bytes[at..].starts_with(&[0xef, 0xbb, 0xbf]) => at += 3,
+            _ => return at,
+        }
+    }
+}
+
+/// Where the bytes from `at` on that `belongs` accepts end.
+fn run_end(bytes: &[u8], at: usize, belongs: impl Fn(u8) -> bool) -> usize {
+    let rest = &bytes[at.min(bytes.len())..];
+    at + rest.iter().position(|&b| !belongs(b)).unwrap_or(rest.len())
+}
+
+/// The end of the number that begins at `at`: digits with or without a point, and an exponent.
+fn number_end(bytes: &[u8], at: usize) -> Option<usize> {
+    let digits = |at| run_end(bytes, at, |b| b.is_ascii_digit());
+    let whole = digits(at);
+    let mut end = whole;
+    if bytes.get(end) == Some(&b'.') {
+        let fraction = digits(end + 1);
+        if whole == at && fraction == end + 1 {
+            return None;
+        }
+        end = fraction;
+    } else if whole == at {
+        return None;
+    }
+    if let Some(b'e' | b'E') = bytes.get(end) {
+        let signed = usize::from(matches!(bytes.get(end + 1), Some(b'+' | b'-')));
+        let first = end + 1 + signed;
+        let exponent = digits(first);
+        if exponent > first {
+            end = exponent;
+        }
+    }
+    Some(end)
+}
+
+fn number(digits: &[u8]) -> Option<f64> {
+    std::str::from_utf8(digits).ok()?.parse().ok()
+}
+
+/// The end of a comment that begins at `at` with two slashes, or with a slash and a star: those
+/// nest. `Err`, at the end of the text, where it is not closed.
+fn comment_end(bytes: &[u8], at: usize) -> Option<Result<usize, usize>> {
+    match bytes.get(at..at + 2)? {
+        b"//" => Some(Ok(run_end(bytes, at, |b| b != b'\n'))),
+        b"/*" => {
+            let (mut depth, mut at) = (1, at + 2);
+            while at < bytes.len() {
+                match &bytes[at..] {
+                    [b'*', b'/', ..] => {
+                        (depth, at) = (depth - 1, at + 2);
+                        if depth == 0 {
+                            return Some(Ok(at));
+                        }
+                    }
+                    [b'/', b'*', ..] => (depth, at) = (depth + 1, at + 2),
+                    _ => at += 1,
+                }
             }
+            Some(Err(bytes.len()))
+        }
+        _ => None,
+    }
+}
+
+/// The end of the string whose opening quote stands at `at`, behind the closing one.
+fn text_end(bytes: &[u8], at: usize) -> Option<usize> {
+    let mut at = at + 1;
+    while at < bytes.len() {
+        match bytes[at] {
+            b'"' => return Some(at + 1),
             b'\\' => at += 2,
             _ => at += 1,
         }
     }
-    lexer.bump(rest.len());
-    Err(Fault::Text)
+    None
 }
 
-const SIGNS: [&str; 26] = [
-    "{", "}", "(", ")", "[", "]", "<", ">", "=", "!", "&", "|", "+", "-", "*", "/", "?", ":", ";",
-    ",", ".", "^", "<=", ">=", "!=", "",
-];
+fn sign(bytes: &[u8]) -> Option<&'static str> {
+    let followed = bytes.get(1) == Some(&b'=');
+    Some(match bytes.first()? {
+        b'<' if followed => "<=",
+        b'>' if followed => ">=",
+        b'!' if followed => "!=",
+        b'{' => "{",
+        b'}' => "}",
+        b'(' => "(",
+        b')' => ")",
+        b'[' => "[",
+        b']' => "]",
+        b'<' => "<",
+        b'>' => ">",
+        b'=' => "=",
+        b'!' => "!",
+        b'&' => "&",
+        b'|' => "|",
+        b'+' => "+",
+        b'-' => "-",
+        b'*' => "*",
+        b'/' => "/",
+        b'?' => "?",
+        b':' => ":",
+        b';' => ";",
+        b',' => ",",
+        b'.' => ".",
+        b'^' => "^",
+        _ => return None,
+    })
+}
 
-fn unescape(text: &str) -> Rc<str> {
+/// A string without its quotes, escapes resolved. Old scenes have Latin-1 in it: a question mark
+/// stands for what is not UTF-8.
+fn unescape(bytes: &[u8]) -> Rc<str> {
+    let plain;
+    let text = match std::str::from_utf8(bytes) {
+        Ok(text) => text,
+        Err(_) => {
+            let ascii = |&b: &u8| if b < 0x80 { b as char } else { '?' };
+            plain = bytes.iter().map(ascii).collect::<String>();
+            &plain
+        }
+    };
     if !text.contains('\\') {
         return text.into();
     }
@@ -153,64 +294,115 @@ fn unescape(text: &str) -> Rc<str> {
     out.into()
 }
 
-/// All tokens of a source, the last one [`Kind::End`].
-pub(super) fn tokens(diagnostics: &Diagnostics, source: SourceId) -> Rc<[Token]> {
-    let bytes = diagnostics.source(source);
-    // Old scenes have Latin-1 in comments and strings. A question mark keeps the byte offsets.
-    let ascii;
-    let text = match std::str::from_utf8(bytes) {
-        Ok(text) => text,
-        Err(_) => {
-            let plain = bytes
-                .iter()
-                .map(|&b| if b < 0x80 { b as char } else { '?' });
-            ascii = plain.collect::<String>();
-            &ascii
+/// The token that begins at or after `at`, and its bytes.
+fn lex(bytes: &[u8], mut at: usize, words: &mut Words) -> (Kind, Range<usize>) {
+    loop {
+        at = blank_end(bytes, at);
+        match comment_end(bytes, at) {
+            Some(Ok(end)) => at = end,
+            Some(Err(end)) => {
+                return (Kind::Bad("a comment that is not closed by `*/`"), at..end);
+            }
+            None => break,
         }
-    };
-    let mut out = Vec::new();
-    let mut lexer = Raw::lexer(text);
-    while let Some(raw) = lexer.next() {
-        let slice = lexer.slice();
-        let kind = match raw {
-            Ok(Raw::Word) => Kind::Word(slice.into()),
-            Ok(Raw::Number) => slice
-                .parse()
-                .map_or(Kind::Bad("a malformed number"), Kind::Number),
-            Ok(Raw::Text) => Kind::Text(unescape(&slice[1..slice.len() - 1])),
-            Ok(Raw::Directive) => Kind::Directive(slice[1..].trim_start().into()),
-            Ok(Raw::Sign) => SIGNS
-                .iter()
-                .find(|sign| **sign == slice)
-                .map_or(Kind::Bad("an unknown sign"), |sign| Kind::Sign(sign)),
-            Ok(Raw::LineComment | Raw::BlockComment) => continue,
-            Err(Fault::Comment) => Kind::Bad("a comment that is not closed by `*/`"),
-            Err(Fault::Text) => Kind::Bad("a string that is not closed by `\"`"),
-            Err(Fault::Character) => Kind::Bad("a character that has no meaning here"),
-        };
-        out.push(Token {
-            kind,
-            span: Span::new(source, lexer.span()),
-        });
     }
-    out.push(Token {
-        kind: Kind::End,
-        span: Span::new(source, text.len()..text.len()),
-    });
-    out.into()
+    let Some(&first) = bytes.get(at) else {
+        return (Kind::End, bytes.len()..bytes.len());
+    };
+    let is_word = |b: u8| b.is_ascii_alphanumeric() || b == b'_';
+    let mut word = |range: Range<usize>| {
+        let text = std::str::from_utf8(&bytes[range]).unwrap_or_default();
+        words.shared(text)
+    };
+    if first.is_ascii_alphabetic() || first == b'_' {
+        let end = run_end(bytes, at, is_word);
+        return (Kind::Word(word(at..end)), at..end);
+    }
+    if let Some(end) = number_end(bytes, at) {
+        let value = number(&bytes[at..end]);
+        return (
+            value.map_or(Kind::Bad("a malformed number"), Kind::Number),
+            at..end,
+        );
+    }
+    match first {
+        b'"' => match text_end(bytes, at) {
+            Some(end) => (Kind::Text(unescape(&bytes[at + 1..end - 1])), at..end),
+            None => {
+                let message = "a string that is not closed by `\"`";
+                (Kind::Bad(message), at..bytes.len())
+            }
+        },
+        b'#' => {
+            let start = run_end(bytes, at + 1, |b| matches!(b, b' ' | b'\t'));
+            let end = run_end(bytes, start, |b| b.is_ascii_alphabetic() || b == b'_');
+            if end > start {
+                (Kind::Directive(word(start..end)), at..end)
+            } else {
+                (Kind::Bad(NO_MEANING), at..at + 1)
+            }
+        }
+        _ => match sign(&bytes[at..]) {
+            Some(sign) => (Kind::Sign(sign), at..at + sign.len()),
+            None => {
+                // All of a character of several bytes.
+                let end = run_end(bytes, at + 1, |b| {
+                    first >= 0x80 && (0x80..0xc0).contains(&b)
+                });
+                (Kind::Bad(NO_MEANING), at..end)
+            }
+        },
+    }
 }
+
+const NO_MEANING: &str = "a character that has no meaning here";
 
 #[cfg(test)]
 mod tests {
-    use std::path::Path;
-
     use super::*;
 
     fn kinds(text: &str) -> Vec<Kind> {
-        let mut diagnostics = Diagnostics::default();
-        let source = diagnostics.add_source(Path::new("t.pov"), text.as_bytes().to_vec());
-        let all = tokens(&diagnostics, source);
-        all.iter().map(|token| token.kind.clone()).collect()
+        let tape = Tape::Source {
+            id: SourceId(0),
+            bytes: Arc::new(text.as_bytes().to_vec()),
+        };
+        let mut words = Words::default();
+        let (mut all, mut at) = (Vec::new(), 0);
+        while all.last() != Some(&Kind::End) {
+            let (token, next) = tape.token(at, &mut words);
+            all.push(token.kind);
+            at = next;
+        }
+        all
+    }
+
+    #[test]
+    fn a_plain_vector_is_read_at_once_like_its_tokens() {
+        let read = |text: &str| {
+            let tape = Tape::Source {
+                id: SourceId(0),
+                bytes: Arc::new(text.as_bytes().to_vec()),
+            };
+            let mut out = [0.0; 5];
+            let found = tape.plain_vector(0, &mut out);
+            found.map(|(count, at)| (out[..count].to_vec(), text[at..].to_owned()))
+        };
+        let rest = |numbers: &[f64], rest: &str| Some((numbers.to_vec(), rest.to_owned()));
+        assert_eq!(read("1, -.5,\n2e3> x"), rest(&[1.0, -0.5, 2000.0], "> x"));
+        assert_eq!(read("- 1 , 2 >"), rest(&[-1.0, 2.0], ">"));
+        for other in [
+            "1>",
+            "1,2",
+            "1,a>",
+            "1 2>",
+            "1,2*3>",
+            "1,2>=3",
+            "1,2,3,4,5,6>",
+            "",
+            "1,,2>",
+        ] {
+            assert_eq!(read(other), None, "{other}");
+        }
     }
 
     #[test]

@@ -2,13 +2,16 @@
 
 use std::collections::BTreeMap;
 use std::rc::Rc;
+use std::sync::Arc;
 
-use octray_geometry::{CornerAttribute, MaterialId, Sheet, Solid, TriangleMesh};
-use octray_math::{DAffine3, DVec3};
+use octray_geometry::{MaterialId, Sheet, Solid};
+use octray_math::DAffine3;
 use octray_scene::{Interior, Object, SceneBuilder};
 
+use super::materials::RecentMaterial;
 use super::object::{Geometry, MeshDef, ObjectDef, Operation};
 use super::texture::Texture;
+use super::triangles::Triangles;
 use crate::mesh_object::mesh_solid;
 use crate::{Diagnostics, Span};
 
@@ -27,41 +30,23 @@ pub(super) struct Context {
     name: Option<Rc<str>>,
 }
 
-/// Triangles of one look, collected from many objects.
+/// Makes the scene out of objects.
 #[derive(Default)]
-struct Batch {
-    positions: Vec<DVec3>,
-    triangles: Vec<[u32; 3]>,
-    normals: Vec<DVec3>,
-    normal_of: Vec<[u32; 3]>,
-}
-
-pub(super) struct Lowering<'a> {
-    diagnostics: &'a mut Diagnostics,
-    pub(super) builder: &'a mut SceneBuilder,
-    default_texture: Rc<Texture>,
+pub(super) struct Lowering {
+    pub(super) diagnostics: Diagnostics,
+    pub(super) builder: SceneBuilder,
+    pub(super) default_texture: Rc<Texture>,
     /// By what a material says, spelled out.
     pub(super) materials: BTreeMap<String, MaterialId>,
-    triangles: BTreeMap<(MaterialId, bool), Batch>,
+    /// Those found last.
+    pub(super) recent: Vec<RecentMaterial>,
+    triangles: Triangles,
+    /// Names of objects that have none of their own.
+    titles: BTreeMap<&'static str, Arc<str>>,
     warned: std::collections::BTreeSet<(u32, usize, String)>,
 }
 
-impl<'a> Lowering<'a> {
-    pub(super) fn new(
-        diagnostics: &'a mut Diagnostics,
-        builder: &'a mut SceneBuilder,
-        default_texture: Rc<Texture>,
-    ) -> Self {
-        Self {
-            diagnostics,
-            builder,
-            default_texture,
-            materials: BTreeMap::new(),
-            triangles: BTreeMap::new(),
-            warned: std::collections::BTreeSet::new(),
-        }
-    }
-
+impl Lowering {
     pub(super) fn warn(&mut self, span: Span, message: impl Into<String>) {
         let message = message.into();
         if self
@@ -145,26 +130,24 @@ impl<'a> Lowering<'a> {
         }
     }
 
-    fn title(object: &ObjectDef, context: &Context) -> String {
-        context.name.as_ref().map_or_else(
-            || {
-                match &object.geometry {
-                    Geometry::Operation(Operation::Difference, _) => "difference",
-                    Geometry::Operation(Operation::Intersection, _) => "intersection",
-                    Geometry::Operation(..) => "merge",
-                    Geometry::Solid(_) => "solid",
-                    Geometry::Mesh(_) => "mesh",
-                    _ => "surface",
-                }
-                .to_owned()
-            },
-            |name| name.to_string(),
-        )
+    fn title(&mut self, object: &ObjectDef, context: &Context) -> Arc<str> {
+        if let Some(name) = &context.name {
+            return Arc::from(&**name);
+        }
+        let title = match &object.geometry {
+            Geometry::Operation(Operation::Difference, _) => "difference",
+            Geometry::Operation(Operation::Intersection, _) => "intersection",
+            Geometry::Operation(..) => "merge",
+            Geometry::Solid(_) => "solid",
+            Geometry::Mesh(_) => "mesh",
+            _ => "surface",
+        };
+        Arc::clone(self.titles.entry(title).or_insert_with(|| title.into()))
     }
 
     fn push_solid(&mut self, solid: Solid, object: &ObjectDef, context: &Context) {
         let material = self.material(context, object.span);
-        let title = Self::title(object, context);
+        let title = self.title(object, context);
         let mut made = if context.clips.is_empty() {
             Object::solid(title, solid, material)
         } else {
@@ -185,12 +168,11 @@ impl<'a> Lowering<'a> {
             *clip = Solid::intersection(all);
         }
         let material = self.material(context, object.span);
-        let mut made = Object::sheet(Self::title(object, context), sheet, material);
+        let mut made = Object::sheet(self.title(object, context), sheet, material);
         made.casts_shadows = !context.no_shadow;
         self.builder.add_object(made);
     }
 
-    /// Triangles go to one mesh per look, so that a thousand lone triangles are one object.
     fn push_mesh(&mut self, def: &MeshDef, object: &ObjectDef, context: &Context) {
         if !context.clips.is_empty() {
             self.warn(object.span, "`clipped_by` of triangles is not supported");
@@ -211,53 +193,17 @@ impl<'a> Lowering<'a> {
                 self.material(&inner, object.span)
             })
             .collect();
-        let turn = context.world.matrix3.inverse().transpose();
-        // A mirrored frame turns the corners' order round.
-        let mirrored = context.world.matrix3.determinant() < 0.0;
-        for (index, corners) in def.mesh.triangles().iter().enumerate() {
-            let texture = def.texture_of.get(index).copied().flatten();
-            let material = texture
-                .and_then(|t| own.get(t as usize).copied())
-                .unwrap_or(general);
-            let batch = self
-                .triangles
-                .entry((material, !context.no_shadow))
-                .or_default();
-            let first = batch.positions.len() as u32;
-            let order = if mirrored { [0, 2, 1] } else { [0, 1, 2] };
-            for corner in order.map(|i| corners[i]) {
-                let p = def.mesh.positions()[corner as usize];
-                batch.positions.push(context.world.transform_point3(p));
-            }
-            batch.triangles.push([first, first + 1, first + 2]);
-            let first = batch.normals.len() as u32;
-            for i in order {
-                let normal = def.mesh.normals().map_or(DVec3::ZERO, |normals| {
-                    normals.values[normals.triangles[index][i] as usize]
-                });
-                batch.normals.push((turn * normal).normalize_or_zero());
-            }
-            batch.normal_of.push([first, first + 1, first + 2]);
-        }
+        let casts_shadows = !context.no_shadow;
+        self.triangles
+            .add(def, &context.world, general, &own, casts_shadows);
     }
 
     /// Adds the collected triangles.
-    pub(super) fn finish(self) {
-        for ((material, casts_shadows), batch) in self.triangles {
-            let smooth = batch.normals.iter().any(|n| *n != DVec3::ZERO);
-            let mesh = TriangleMesh::new(batch.positions, batch.triangles).and_then(|mesh| {
-                if smooth {
-                    mesh.with_normals(CornerAttribute {
-                        values: batch.normals,
-                        triangles: batch.normal_of,
-                    })
-                } else {
-                    Ok(mesh)
-                }
-            });
+    pub(super) fn finish(&mut self) {
+        for ((material, casts_shadows), mesh) in std::mem::take(&mut self.triangles).into_meshes() {
             match mesh {
                 Ok(mesh) => {
-                    let sheet = Sheet::mesh(std::sync::Arc::new(mesh));
+                    let sheet = Sheet::mesh(Arc::new(mesh));
                     let mut object = Object::sheet("triangles", sheet, material);
                     object.casts_shadows = casts_shadows;
                     self.builder.add_object(object);
@@ -320,6 +266,8 @@ impl<'a> Lowering<'a> {
         context: Option<&Context>,
     ) -> Option<Solid> {
         match &object.geometry {
+            // As it is: moving it nowhere would make another node.
+            Geometry::Solid(solid) if *frame == DAffine3::IDENTITY => Some(solid.clone()),
             Geometry::Solid(solid) => {
                 let made = solid.transform(*frame);
                 if made.is_err() {

@@ -2,7 +2,7 @@
 
 use std::rc::Rc;
 
-use super::lexer::{Kind, Token};
+use super::lexer::{Kind, Tape, Token};
 use super::reader::{Parsed, Reader};
 use super::value::{Function, Macro, Terms, Value};
 use crate::Span;
@@ -19,10 +19,10 @@ impl Reader<'_> {
         let Some(frame) = self.frames.last() else {
             return Ok(());
         };
-        let tokens = Rc::clone(&frame.tokens);
+        let tape = frame.tape.clone();
         let defined = Macro {
             parameters,
-            tokens,
+            tape,
             start,
             end,
         };
@@ -70,8 +70,8 @@ impl Reader<'_> {
                 self.scopes.bind(Rc::clone(parameter), outer);
             }
         }
-        let tokens = Rc::clone(&called.tokens);
-        let pushed = self.push_frame(tokens, called.start, called.end, scopes);
+        let tape = called.tape.clone();
+        let pushed = self.push_frame(tape, called.start, called.end, scopes);
         if pushed.is_err() {
             self.scopes.truncate(scopes);
         }
@@ -122,9 +122,7 @@ impl Reader<'_> {
         let token = self.peek();
         if let Some(word) = token.word() {
             let alone = self
-                .frames
-                .last()
-                .and_then(|frame| frame.tokens.get(frame.at))
+                .behind_next()
                 .is_some_and(|next| next.is(",") || next.is(")"));
             let value = self.scopes.get(word).cloned();
             if alone && (value.is_some() || !super::is_reserved(word)) {
@@ -213,7 +211,7 @@ impl Reader<'_> {
         let body = Rc::clone(&called.body);
         let end = body.len();
         let result = self
-            .push_frame(body, 0, end, scopes)
+            .push_frame(Tape::Tokens(body), 0, end, scopes)
             .and_then(|()| self.nested(Self::expression))
             .and_then(|terms| {
                 if self.at(";") {

@@ -1,15 +1,51 @@
 //! The materials of a scene: one for all objects that look the same.
 
+use std::rc::Rc;
+
 use octray_geometry::MaterialId;
-use octray_scene::{Material, Pigment};
+use octray_scene::{Interior, Material, Pigment};
 
 use super::lower::{Context, Lowering};
-use super::texture::Layer;
+use super::texture::{Layer, Texture};
 use crate::Span;
 
-impl Lowering<'_> {
+/// A texture that looks the same wherever it is, with what it was taken with.
+pub(super) struct RecentMaterial {
+    texture: Rc<Texture>,
+    interior: Option<Interior>,
+    id: MaterialId,
+}
+
+/// How many of them are kept.
+const RECENT: usize = 16;
+
+impl Lowering {
     /// The material of a context; one for all contexts that look the same.
     pub(super) fn material(&mut self, context: &Context, span: Span) -> MaterialId {
+        let recent = self.recent.iter().find(|recent| {
+            Rc::ptr_eq(&recent.texture, &context.texture) && recent.interior == context.interior
+        });
+        if let Some(recent) = recent {
+            return recent.id;
+        }
+        let id = self.described_material(context, span);
+        let is_plain = context.texture.layers.len() == 1
+            && matches!(context.texture.first().pigment, Pigment::Uniform(_));
+        if is_plain {
+            if self.recent.len() == RECENT {
+                self.recent.remove(0);
+            }
+            self.recent.push(RecentMaterial {
+                texture: Rc::clone(&context.texture),
+                interior: context.interior,
+                id,
+            });
+        }
+        id
+    }
+
+    /// The same, found by what it says.
+    fn described_material(&mut self, context: &Context, span: Span) -> MaterialId {
         if context.texture.layers.len() > 1 {
             self.warn(
                 span,

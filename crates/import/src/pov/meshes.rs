@@ -46,6 +46,14 @@ impl Collected {
         });
         index as u32
     }
+
+    /// Most meshes have no textures of their own, and keep no list of them.
+    fn texture_triangle(&mut self, triangle: usize, texture: Option<u32>) {
+        if texture.is_some() {
+            self.texture_of.resize(triangle, None);
+            self.texture_of.push(texture);
+        }
+    }
 }
 
 impl Reader<'_> {
@@ -67,7 +75,6 @@ impl Reader<'_> {
         }
         into.triangles.push([first, first + 1, first + 2]);
         into.normal_of.push(normals);
-        into.texture_of.push(None);
         Ok(())
     }
 
@@ -117,11 +124,10 @@ impl Reader<'_> {
     fn mesh_texture(&mut self, all: &mut Collected) -> Parsed<()> {
         let texture = self.texture_block()?;
         // A declared texture that is used many times is kept once.
-        let known = all.textures.iter().find(|t| ***t == texture).cloned();
-        let index = all.texture(known.unwrap_or_else(|| Rc::new(texture)));
-        if let Some(last) = all.texture_of.last_mut() {
-            *last = Some(index);
-        }
+        let known = all.textures.iter().find(|t| **t == texture).cloned();
+        let index = all.texture(known.unwrap_or(texture));
+        let triangle = all.triangles.len().saturating_sub(1);
+        all.texture_triangle(triangle, Some(index));
         Ok(())
     }
 
@@ -137,11 +143,10 @@ impl Reader<'_> {
                 Ok(mesh)
             }
         });
-        let textured = all.texture_of.iter().any(Option::is_some);
         match made {
             Ok(mesh) => Ok(Some(Geometry::Mesh(MeshDef {
                 mesh: Arc::new(mesh),
-                texture_of: if textured { all.texture_of } else { Vec::new() },
+                texture_of: all.texture_of,
                 textures: all.textures,
                 has_inside: all.has_inside,
             }))),
@@ -253,13 +258,14 @@ impl Reader<'_> {
             if texture.is_some_and(|t| t as usize >= all.textures.len()) {
                 return r.fail(r.last, "the texture list has no texture of this number");
             }
-            all.texture_of.push(texture);
+            let triangle = all.triangles.len() - 1;
+            all.texture_triangle(triangle, texture);
             Ok(())
         })
     }
 
     fn at_number(&mut self) -> bool {
-        matches!(self.peek().kind, super::lexer::Kind::Number(_))
+        matches!(self.look().kind, super::lexer::Kind::Number(_))
     }
 
     fn texture_list(&mut self, all: &mut Collected) -> Parsed<()> {
@@ -268,7 +274,7 @@ impl Reader<'_> {
             if r.peek_word().as_deref() == Some("texture") {
                 r.next();
                 let made = r.texture_block()?;
-                textures.push(Rc::new(made));
+                textures.push(made);
             } else if let Value::Texture(texture) = r.reference()? {
                 textures.push(texture);
             } else {

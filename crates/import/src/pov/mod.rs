@@ -43,16 +43,15 @@ mod strings;
 mod swept;
 mod texture;
 mod transforms;
+mod triangles;
 mod value;
 
 use std::path::Path;
-use std::rc::Rc;
 
 use octray_math::DVec3;
-use octray_scene::{Background, Encoding, SceneBuilder, View};
+use octray_scene::{Background, Encoding, View};
 
 use crate::{Diagnostics, FileSystem, Imported, Options};
-use lower::Lowering;
 use reader::Reader;
 
 /// What `image_width` and `image_height` are: only their ratio is of use to a scene, and a
@@ -71,16 +70,19 @@ pub fn import(path: &Path, bytes: Vec<u8>, files: &dyn FileSystem, options: &Opt
 }
 
 fn finish(mut reader: Reader<'_>) -> Imported {
-    let mut builder = SceneBuilder::new();
-    if let Some((state, span)) = reader.scene.camera
-        && let Some(camera) = reader.made_camera(&state, span)
-    {
-        builder.set_camera(camera);
+    let camera = if let Some((state, span)) = reader.scene.camera {
+        reader.made_camera(&state, span)
+    } else {
+        None
+    };
+    let mut lowering = reader.lowering;
+    let mut scene = reader.scene;
+    lowering.diagnostics = reader.diagnostics;
+    lowering.default_texture = reader.default_texture;
+    if let Some(camera) = camera {
+        lowering.builder.set_camera(camera);
     }
-    let mut diagnostics = reader.diagnostics;
-    let scene = reader.scene;
-    let default_texture = Rc::clone(&reader.default_texture);
-    let settings = builder.settings_mut();
+    let settings = lowering.builder.settings_mut();
     settings.up = DVec3::Y;
     settings.view = View::Standard;
     settings.encoding = match scene.assumed_gamma {
@@ -91,7 +93,7 @@ fn finish(mut reader: Reader<'_>) -> Imported {
     settings.ambient_light = scene.ambient_light.unwrap_or(DVec3::ONE);
     settings.max_generations = scene.max_trace_level.unwrap_or(5.0).clamp(1.0, 256.0) as u32;
     settings.contribution_threshold = scene.adc_bailout.unwrap_or(1.0 / 255.0).max(0.0);
-    builder.set_background(if scene.sky.is_empty() {
+    lowering.builder.set_background(if scene.sky.is_empty() {
         Background::Uniform(scene.background)
     } else {
         Background::Sky {
@@ -99,14 +101,13 @@ fn finish(mut reader: Reader<'_>) -> Imported {
             layers: scene.sky,
         }
     });
-    if !diagnostics.has_errors() {
-        let mut lowering = Lowering::new(&mut diagnostics, &mut builder, default_texture);
-        for object in &scene.objects {
-            lowering.add(object);
+    if !lowering.diagnostics.has_errors() {
+        for object in scene.objects.drain(..) {
+            lowering.add(&object);
         }
         lowering.finish();
     }
-    Imported::finish(builder, diagnostics)
+    Imported::finish(lowering.builder, lowering.diagnostics)
 }
 
 /// Blocks that are read over, and what they are called in messages.

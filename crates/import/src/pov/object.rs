@@ -90,6 +90,19 @@ impl ObjectDef {
         }
     }
 
+    /// Whether no part of it takes over the texture of what it is in.
+    pub(super) fn has_its_look(&self) -> bool {
+        let own = self.texture.is_some()
+            || match &self.geometry {
+                Geometry::Light(_) => true,
+                Geometry::Operation(Operation::Union, parts) => {
+                    parts.iter().all(|part| part.has_its_look())
+                }
+                _ => false,
+            };
+        own && self.companions.iter().all(|part| part.has_its_look())
+    }
+
     /// Moves the object with all that hangs on it.
     pub(super) fn apply(&mut self, map: &DAffine3) {
         self.transform = *map * self.transform;

@@ -1,11 +1,14 @@
 //! The state of one import, and the stream of tokens that its parts read from.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::PathBuf;
 use std::rc::Rc;
 
+use octray_geometry::Solid;
+
 use super::directives::Flow;
-use super::lexer::{Kind, Token};
+use super::lexer::{Kind, Tape, Token, Words};
+use super::lower::Lowering;
 use super::scene::Collected;
 use super::scope::Scopes;
 use super::texture::Texture;
@@ -20,7 +23,7 @@ pub(super) type Parsed<T> = Result<T, Reported>;
 
 /// A source or a macro body being read.
 pub(super) struct Frame {
-    pub(super) tokens: Rc<[Token]>,
+    pub(super) tape: Tape,
     pub(super) at: usize,
     pub(super) end: usize,
     /// How many scopes there were before it.
@@ -47,7 +50,10 @@ pub(super) struct Reader<'a> {
     pub(super) frames: Vec<Frame>,
     pub(super) flow: Vec<Flow>,
     pub(super) scopes: Scopes,
+    pub(super) words: Words,
     ahead: Option<Token>,
+    /// Where the look-ahead begins in its frame.
+    pub(super) ahead_at: usize,
     /// Inside the value of a `#declare`, where the next directive of its own frame ends the
     /// value: how many frames there are; otherwise 0.
     pub(super) hold: usize,
@@ -55,7 +61,7 @@ pub(super) struct Reader<'a> {
     pub(super) raw_names: bool,
     depth: usize,
     pub(super) braces: usize,
-    steps: u64,
+    pub(super) steps: u64,
     max_steps: u64,
     bytes: u64,
     pub(super) max_bytes: u64,
@@ -74,6 +80,9 @@ pub(super) struct Reader<'a> {
     /// `image_width` or `image_height` was read.
     pub(super) read_image_size: bool,
     pub(super) scene: Collected,
+    pub(super) lowering: Lowering,
+    /// Balls by the bits of their radius.
+    pub(super) spheres: BTreeMap<u64, Solid>,
 }
 
 impl<'a> Reader<'a> {
@@ -91,7 +100,9 @@ impl<'a> Reader<'a> {
             frames: Vec::new(),
             flow: Vec::new(),
             scopes: Scopes::new(),
+            words: Words::default(),
             ahead: None,
+            ahead_at: 0,
             hold: 0,
             raw_names: false,
             depth: 0,
@@ -111,6 +122,8 @@ impl<'a> Reader<'a> {
             partial_includes: false,
             read_image_size: false,
             scene: Collected::default(),
+            lowering: Lowering::default(),
+            spheres: BTreeMap::new(),
         }
     }
 
@@ -188,7 +201,7 @@ impl<'a> Reader<'a> {
     /// Starts to read tokens that end at `end` before going on with the present ones.
     pub(super) fn push_frame(
         &mut self,
-        tokens: Rc<[Token]>,
+        tape: Tape,
         at: usize,
         end: usize,
         scopes: usize,
@@ -200,7 +213,7 @@ impl<'a> Reader<'a> {
             );
         }
         self.frames.push(Frame {
-            tokens,
+            tape,
             at,
             end,
             scopes,
@@ -225,11 +238,14 @@ impl<'a> Reader<'a> {
                 return None;
             }
             let frame = self.frames.last_mut()?;
-            if frame.at < frame.end && frame.tokens[frame.at].kind != Kind::End {
-                let token = frame.tokens[frame.at].clone();
-                frame.at += 1;
-                self.last = token.span;
-                return Some(token);
+            if frame.at < frame.end {
+                let (token, next) = frame.tape.token(frame.at, &mut self.words);
+                if token.kind != Kind::End {
+                    self.ahead_at = frame.at;
+                    frame.at = next;
+                    self.last = token.span;
+                    return Some(token);
+                }
             }
             self.pop_frame();
         }
@@ -297,34 +313,45 @@ impl<'a> Reader<'a> {
             return;
         };
         while frame.at < frame.end {
-            match &frame.tokens[frame.at].kind {
+            let (token, next) = frame.tape.token(frame.at, &mut self.words);
+            match &token.kind {
                 Kind::Sign(sign) if *sign == last => {
-                    frame.at += 1;
+                    frame.at = next;
                     return;
                 }
                 Kind::Directive(_) | Kind::End | Kind::Sign("}") => return,
                 Kind::Word(word) if super::STATEMENTS.contains(&&**word) => return,
-                _ => frame.at += 1,
+                _ => frame.at = next,
             }
         }
     }
 
     /// The next token, left in place.
-    pub(super) fn peek(&mut self) -> Token {
-        self.fill();
-        let end = Token {
+    pub(super) fn look(&mut self) -> &Token {
+        if self.ahead.is_none() {
+            self.fill();
+        }
+        let span = self.last;
+        self.ahead.get_or_insert(Token {
             kind: Kind::End,
-            span: self.last,
-        };
-        self.ahead.clone().unwrap_or(end)
+            span,
+        })
     }
 
-    /// Takes the next token; a directive that ended a held value is put back first.
+    /// A copy of the next token.
+    pub(super) fn peek(&mut self) -> Token {
+        self.look().clone()
+    }
+
+    /// Takes the next token.
     pub(super) fn next(&mut self) -> Token {
-        let token = self.peek();
-        if token.kind != Kind::End {
-            self.ahead = None;
-        }
+        let is_end = self.look().kind == Kind::End;
+        let span = self.last;
+        let kind = Kind::End;
+        let token = match self.ahead.take() {
+            Some(token) if !is_end => token,
+            _ => self.ahead.insert(Token { kind, span }).clone(),
+        };
         match token.kind {
             Kind::Sign("{") => self.braces += 1,
             Kind::Sign("}") => self.braces = self.braces.saturating_sub(1),
@@ -357,7 +384,7 @@ impl<'a> Reader<'a> {
         {
             self.ahead = None;
             if let Some(frame) = self.frames.last_mut() {
-                frame.at = frame.at.saturating_sub(1);
+                frame.at = self.ahead_at;
             }
         }
     }
@@ -368,6 +395,29 @@ impl<'a> Reader<'a> {
         if let Some(frame) = self.frames.last_mut() {
             frame.at = at;
         }
+    }
+
+    /// What stands behind the look-ahead, directives and macro names included.
+    pub(super) fn behind_next(&mut self) -> Option<Token> {
+        self.look();
+        let frame = self.frames.last()?;
+        Some(frame.tape.token(frame.at, &mut self.words).0)
+    }
+
+    /// The numbers of a vector whose opening bracket was taken, if they are plain, with their
+    /// closing bracket.
+    pub(super) fn plain_vector(&mut self, out: &mut [f64; 5]) -> Option<usize> {
+        if self.ahead.is_some() || self.halted {
+            return None;
+        }
+        let frame = self.frames.last_mut()?;
+        let (count, bracket) = frame.tape.plain_vector(frame.at, out)?;
+        if bracket >= frame.end {
+            return None;
+        }
+        frame.at = bracket;
+        self.steps += count as u64;
+        Some(count)
     }
 
     /// Exchanges the look-ahead: function bodies are read from a place of their own.

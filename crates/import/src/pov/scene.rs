@@ -68,6 +68,19 @@ impl Reader<'_> {
         self.braces = 0;
     }
 
+    /// An object of the top level goes into the scene at once where its look is known, so that what
+    /// was written about it takes no memory any more. One that takes over the default texture has to
+    /// wait for the last `#default`, and so have all behind it, to keep their order.
+    fn add(&mut self, object: Rc<ObjectDef>) {
+        if self.scene.objects.is_empty() && object.has_its_look() {
+            std::mem::swap(&mut self.diagnostics, &mut self.lowering.diagnostics);
+            self.lowering.add(&object);
+            std::mem::swap(&mut self.diagnostics, &mut self.lowering.diagnostics);
+        } else {
+            self.scene.objects.push(object);
+        }
+    }
+
     fn statement(&mut self) -> Parsed<()> {
         let token = self.peek();
         let Some(word) = token.word().cloned() else {
@@ -84,7 +97,7 @@ impl Reader<'_> {
         };
         if OBJECTS.contains(&&*word) {
             if let Some(object) = self.object()? {
-                self.scene.objects.push(object);
+                self.add(object);
             }
             return Ok(());
         }

@@ -69,33 +69,33 @@ impl Texture {
 impl Reader<'_> {
     /// `texture { ... }`, once or more: the layers from below.
     pub(super) fn texture_value(&mut self) -> Parsed<Value> {
-        let mut all: Option<Texture> = None;
+        let mut all: Option<Rc<Texture>> = None;
         while self.eat_word("texture") {
             let one = self.texture_block()?;
             match &mut all {
-                Some(all) => all.layers.extend(one.layers),
+                Some(all) => Rc::make_mut(all).layers.extend_from_slice(&one.layers),
                 None => all = Some(one),
             }
         }
-        Ok(Value::Texture(Rc::new(all.unwrap_or_default())))
+        Ok(Value::Texture(all.unwrap_or_default()))
     }
 
-    /// `{ ... }` behind `texture`.
-    pub(super) fn texture_block(&mut self) -> Parsed<Texture> {
-        let mut made = (*self.default_texture).clone();
-        let mut tiles: Vec<Texture> = Vec::new();
+    /// `{ ... }` behind `texture`; a declared one as it is, if only its name stands there.
+    pub(super) fn texture_block(&mut self) -> Parsed<Rc<Texture>> {
+        let mut made = Rc::clone(&self.default_texture);
+        let mut tiles: Vec<Rc<Texture>> = Vec::new();
         self.block("texture", |r| {
             let token = r.peek();
             if let Some(map) = r.transform_item()? {
                 let inverse = map.inverse();
-                for layer in &mut made.layers {
+                for layer in &mut Rc::make_mut(&mut made).layers {
                     layer.pigment = layer.pigment.transformed(&inverse);
                 }
                 return Ok(());
             }
             let word = r.peek_word();
             match word.as_deref() {
-                Some("pigment" | "finish" | "normal") => r.texture_part(&mut made),
+                Some("pigment" | "finish" | "normal") => r.texture_part(Rc::make_mut(&mut made)),
                 Some("checker" | "tiles") => {
                     r.next();
                     r.tiles(&mut tiles)?;
@@ -121,7 +121,7 @@ impl Reader<'_> {
         Ok(made)
     }
 
-    fn named_texture(&mut self, made: &mut Texture) -> Parsed<()> {
+    fn named_texture(&mut self, made: &mut Rc<Texture>) -> Parsed<()> {
         let token = self.peek();
         if let Some(word) = token.word() {
             let word = Rc::clone(word);
@@ -140,8 +140,11 @@ impl Reader<'_> {
             }
         }
         match self.reference()? {
-            Value::Texture(texture) => *made = (*texture).clone(),
-            Value::Unknown => made.layers[0].pigment = Pigment::Uniform(Color::rgb(0.5, 0.5, 0.5)),
+            Value::Texture(texture) => *made = texture,
+            Value::Unknown => {
+                let grey = Pigment::Uniform(Color::rgb(0.5, 0.5, 0.5));
+                Rc::make_mut(made).layers[0].pigment = grey;
+            }
             Value::Ignored(_) => {}
             other => {
                 let message = format!("expected a texture, found {}", other.describe());
@@ -170,7 +173,7 @@ impl Reader<'_> {
     }
 
     /// Two textures, as `checker texture{} texture{}` or `tiles { texture{} tile2 texture{} }`.
-    fn tiles(&mut self, tiles: &mut Vec<Texture>) -> Parsed<()> {
+    fn tiles(&mut self, tiles: &mut Vec<Rc<Texture>>) -> Parsed<()> {
         if self.at("{") {
             return self.block("tiles", |r| {
                 if r.eat_word("tile2") {
@@ -186,11 +189,11 @@ impl Reader<'_> {
         Ok(())
     }
 
-    fn tile(&mut self, tiles: &mut Vec<Texture>) -> Parsed<()> {
+    fn tile(&mut self, tiles: &mut Vec<Rc<Texture>>) -> Parsed<()> {
         if self.eat_word("texture") {
             tiles.push(self.texture_block()?);
         } else {
-            let mut named = Texture::default();
+            let mut named = Rc::default();
             self.named_texture(&mut named)?;
             tiles.push(named);
         }
@@ -258,11 +261,11 @@ impl Reader<'_> {
     }
 }
 
-fn checkered(tiles: &[Texture], base: &Texture) -> Texture {
+fn checkered(tiles: &[Rc<Texture>], base: &Rc<Texture>) -> Rc<Texture> {
     let [a, b, ..] = tiles else {
-        return base.clone();
+        return Rc::clone(base);
     };
-    let mut made = a.clone();
+    let mut made = (**a).clone();
     made.name = None;
     made.layers.truncate(1);
     made.layers[0].pigment = Pigment::Pattern {
@@ -272,5 +275,5 @@ fn checkered(tiles: &[Texture], base: &Texture) -> Texture {
         ])),
         pattern_from_world: DAffine3::IDENTITY,
     };
-    made
+    Rc::new(made)
 }

@@ -8,10 +8,10 @@ use super::value::Value;
 impl Reader<'_> {
     /// A transform, if the next word is one; it is taken.
     pub(super) fn transform_item(&mut self) -> Parsed<Option<DAffine3>> {
-        let token = self.peek();
-        let Some(word) = token.word().cloned() else {
+        let Some(word) = self.peek_word() else {
             return Ok(None);
         };
+        let token = self.peek();
         let map = match &*word {
             "translate" => {
                 self.next();

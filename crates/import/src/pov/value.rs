@@ -8,7 +8,7 @@ use octray_scene::{Color, Interior, Pigment};
 use super::camera::CameraState;
 use super::color_map::ColorMap;
 use super::finish::SurfaceFinish;
-use super::lexer::Token;
+use super::lexer::{Tape, Token};
 use super::object::ObjectDef;
 use super::texture::Texture;
 
@@ -103,7 +103,7 @@ pub(super) struct Array {
 #[derive(Clone, Debug)]
 pub(super) struct Macro {
     pub(super) parameters: Vec<Rc<str>>,
-    pub(super) tokens: Rc<[Token]>,
+    pub(super) tape: Tape,
     pub(super) start: usize,
     pub(super) end: usize,
 }

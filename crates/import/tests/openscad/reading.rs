@@ -50,7 +50,7 @@ pub(crate) fn mistakes(text: &str) -> Vec<String> {
 pub(crate) fn solid(object: &Object) -> &Solid {
     match &object.shape {
         Shape::Solid(solid) => solid,
-        Shape::Sheet(_) => panic!("{} is a sheet", object.name),
+        _ => panic!("{} is no solid", object.name),
     }
 }
 

@@ -127,7 +127,7 @@ fn empty_operands_count_as_in_openscad() {
 fn marks_switch_statements_off_and_on() {
     let names = |text: &str| -> Vec<String> {
         let scene = clean(text);
-        scene.objects().iter().map(|o| o.name.clone()).collect()
+        scene.objects().iter().map(|o| o.name.to_string()).collect()
     };
     assert_eq!(
         names("%cube(1);\n*sphere(1);\n#cylinder(h = 1);\n%#cube(2);"),
@@ -145,7 +145,7 @@ fn top_level_parts_are_objects_of_their_own() {
         "group() { cube(1);\n  multmatrix([[1, 0, 0, 5], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]]) {\n\
          render() { sphere(1); union() { cube(2); group(); } } } }",
     );
-    let names: Vec<&str> = scene.objects().iter().map(|o| o.name.as_str()).collect();
+    let names: Vec<&str> = scene.objects().iter().map(|o| &*o.name).collect();
     assert_eq!(
         names,
         ["cube in line 1", "sphere in line 3", "cube in line 3"]

@@ -37,6 +37,7 @@ struct Arrays {
     t_exit: Made<PyArray1<f64>>,
     lengths: Made<PyArray1<f64>>,
     object_id: Made<PyArray1<i64>>,
+    instance_id: Made<PyArray1<i64>>,
     material_id: Made<PyArray1<i64>>,
     face_enter: Made<PyArray1<i64>>,
     face_exit: Made<PyArray1<i64>>,
@@ -53,6 +54,7 @@ impl Arrays {
             t_exit: PyOnceLock::new(),
             lengths: PyOnceLock::new(),
             object_id: PyOnceLock::new(),
+            instance_id: PyOnceLock::new(),
             material_id: PyOnceLock::new(),
             face_enter: PyOnceLock::new(),
             face_exit: PyOnceLock::new(),
@@ -213,6 +215,18 @@ impl Intersections {
     fn object_id<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<i64>> {
         made(py, &self.made.object_id, || {
             self.each(|c| i64::from(c.object.0))
+        })
+    }
+
+    /// Which copy of its object the solid is, from 0; -1 where the object is not made of instances:
+    /// int64, (M,).
+    #[getter]
+    fn instance_id<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<i64>> {
+        made(py, &self.made.instance_id, || {
+            self.each(|c| {
+                let copy = self.world.instance(c.instance);
+                copy.map_or(-1, |(_, copy)| i64::from(copy))
+            })
         })
     }
 
@@ -393,7 +407,7 @@ pub(crate) fn list_intersections(
     method: Method<'_>,
 ) -> PyResult<Intersections> {
     let overlaps = overlaps_named(overlaps)?;
-    let rays = Rays::new("rays", rays)?;
+    let rays = Rays::new("rays", rays, method.1)?;
     let ask = move |batch: &Batch<'_>, rays: &[RayRow]| batch.chords(rays, whole_line, overlaps);
     let (world, chords) = rays.ask(scene, method, ask)?;
     Ok(Intersections {

@@ -1,9 +1,10 @@
 //! Eight boxes at a time: octree topology with tight bounds.
 //!
 //! The tree is generic over what it holds: it sees a box per item, and names items by their index.
-//! Cells give the splitting planes and the order, boxes do the culling: centres are sorted in
-//! Morton order, cells are halved where they hold items, and nodes of eight are filled with the
-//! parts of largest surface area first. Every item stands in exactly one leaf.
+//! Boxes do the culling. Items are halved again and again, in Morton order at the planes of an
+//! octree's cells ([`Quality::Fast`]) or at the planes where rays are expected to pay least
+//! ([`Quality::Full`]); then the nodes of eight are made of the halves that cost least. Every item
+//! stands in exactly one leaf.
 //!
 //! Bounds are kept in `f32`, relative to the tree's centre, scaled by a power of two to `[-1, 1]`
 //! and rounded outwards. They only rule out; the visitor decides in `f64`. So a search gives the
@@ -12,42 +13,74 @@
 //! corner of the tree's bounds relative to the ray's origin. (Bounds of items whose parameters are
 //! less accurate must be inflated before the tree is built.)
 
-mod binary;
-mod collapse;
+mod beam;
+mod build;
+mod cost;
+mod divide;
 mod frame;
+mod items;
+mod morton;
+mod reference;
 mod region;
+mod split;
+mod subtree;
 #[cfg(test)]
 mod tests;
 mod walk;
 
+use std::sync::atomic::AtomicU64;
+
 use bytemuck::{Pod, Zeroable};
 use octray_kernels::{Boxes8, Lanes};
-use octray_math::Aabb;
+use octray_math::{Aabb, DVec3};
+use rayon::prelude::*;
 use thiserror::Error;
 
-use binary::{Binary, Key, Source, Subtree};
+use divide::Division;
 use frame::Frame;
+use reference::{PaddedBox, Reference};
+use split::Piece;
+use subtree::Plan;
 
-pub use walk::WalkCost;
+pub use beam::{BEAM, Beam, BeamLine, BeamVisitor, GROUPS, PendingBeam};
+pub use frame::LocalLine;
+pub use items::{Coordinates, Items};
+pub use walk::{LeafVisitor, Pending, WalkCost};
 
 /// No way from the root has more nodes than this plus one, whatever the items.
 const MAX_DEPTH: u32 = 73;
+/// How many items a thread looks at in one go.
+const SHARE: usize = 1 << 12;
 /// The most items a leaf may hold.
 const LARGEST_LEAF: u32 = 8;
+
+/// How much time is spent on a tree.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Quality {
+    /// Soon ready: items are divided along the cells of an octree, in Morton order.
+    Fast,
+    /// Quick to search: items are divided where rays are expected to pay least.
+    #[default]
+    Full,
+}
 
 /// How to build.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct WideTreeConfig {
+    /// How much time is spent.
+    pub quality: Quality,
     /// The most items in a leaf, 1 to 8 (taken as the nearest of these).
     pub leaf_size: u32,
-    /// Bytes that the tree and its construction may take, the caller's boxes aside.
+    /// Bytes that the tree and its construction may take, the caller's boxes and about 2 MB for
+    /// each thread aside.
     pub memory_limit: u64,
 }
 
 impl Default for WideTreeConfig {
     fn default() -> Self {
         Self {
-            leaf_size: 4,
+            quality: Quality::default(),
+            leaf_size: 8,
             memory_limit: 8 << 30,
         }
     }
@@ -62,12 +95,14 @@ pub enum WideTreeError {
     /// Links have 28 bits for an item.
     #[error("{0} items; a tree holds at most 2^28")]
     TooMany(usize),
-    /// Known before anything is allocated.
-    #[error("a tree over {items} items may take {needed} bytes, more than the limit of {limit}")]
+    /// Known before the memory is taken.
+    #[error(
+        "a tree over {items} items takes at least {needed} bytes, more than the limit of {limit}"
+    )]
     Memory {
         /// How many items.
         items: usize,
-        /// Upper bound of the bytes needed.
+        /// Bytes needed, or a lower bound.
         needed: u64,
         /// Bytes allowed.
         limit: u64,
@@ -109,12 +144,12 @@ mod link {
         Some(first..first + (word >> COUNT_SHIFT & 7) as usize + 1)
     }
 
-    /// A link to a node whose array was appended to another that had `base` nodes.
-    pub(super) const fn rebased(word: u32, base: usize) -> u32 {
+    /// A link into arrays that were appended to others of so many nodes and items.
+    pub(super) const fn rebased(word: u32, nodes: usize, items: usize) -> u32 {
         if word & LEAF == 0 {
-            word + base as u32
+            word + nodes as u32
         } else {
-            word
+            word + items as u32
         }
     }
 }
@@ -124,6 +159,8 @@ mod link {
 pub struct WideTreeStats {
     /// Items that can be met; empty ones are left out.
     pub items: u64,
+    /// Items in leaves; more than there are where items stand in several.
+    pub references: u64,
     /// Nodes of eight children.
     pub nodes: u64,
     /// Leaves with at least one item.
@@ -146,33 +183,40 @@ pub struct WideTree {
 }
 
 impl WideTree {
-    /// A tree over items with these boxes, built in the current thread pool; the same bytes
-    /// whatever its size.
-    ///
-    /// Empty boxes (NaN makes a box empty) are items that no line meets.
+    /// A tree over items with these boxes; see [`WideTree::over`].
     ///
     /// # Errors
-    /// A box is unbounded, or there are too many items for the format or for the memory limit.
+    /// As there.
     pub fn build(bounds: &[Aabb], config: &WideTreeConfig) -> Result<Self, WideTreeError> {
-        if let Some(item) = bounds.iter().position(|b| !b.is_bounded()) {
-            return Err(WideTreeError::Unbounded(item));
+        Self::over(bounds, config)
+    }
+
+    /// A tree over items, built in the current thread pool; the same bytes whatever its size.
+    ///
+    /// # Errors
+    /// An item is unbounded, or there are too many for the format or for the memory limit.
+    pub fn over<I: Items + ?Sized>(
+        items: &I,
+        config: &WideTreeConfig,
+    ) -> Result<Self, WideTreeError> {
+        let count = items.count();
+        if count > link::MAX_ITEMS {
+            return Err(WideTreeError::TooMany(count));
         }
-        if bounds.len() > link::MAX_ITEMS {
-            return Err(WideTreeError::TooMany(bounds.len()));
+        let lacking = |needed: u64| WideTreeError::Memory {
+            items: count,
+            needed,
+            limit: config.memory_limit,
+        };
+        let reference_bytes = |count: usize| (count * size_of::<Reference>()) as u64;
+        let mut preparing = reference_bytes(count);
+        if config.quality == Quality::Fast {
+            preparing += morton::bytes(count);
         }
-        let leaf_size = config.leaf_size.clamp(1, LARGEST_LEAF);
-        let needed = Self::memory_bound(bounds.len(), leaf_size);
-        if needed > config.memory_limit {
-            return Err(WideTreeError::Memory {
-                items: bounds.len(),
-                needed,
-                limit: config.memory_limit,
-            });
+        if preparing > config.memory_limit {
+            return Err(lacking(preparing));
         }
-        let whole = bounds
-            .iter()
-            .filter(|b| !b.is_empty())
-            .fold(Aabb::EMPTY, |whole, &b| whole.union(b));
+        let (whole, met) = Self::measure(items)?;
         let mut tree = Self {
             frame: Frame::new(&whole),
             nodes: Vec::new(),
@@ -181,42 +225,95 @@ impl WideTree {
             stats: WideTreeStats::default(),
             lanes: Lanes::detect(),
         };
-        if whole.is_empty() {
+        if met == 0 {
             return Ok(tree);
         }
-        let source = Source {
-            bounds,
-            frame: tree.frame,
-            leaf_size,
+        let mut references = tree.references(items, met);
+        let codes = match config.quality {
+            Quality::Fast => morton::sort(&mut references),
+            Quality::Full => Vec::new(),
         };
-        let indices = (0..bounds.len() as u32).filter(|&i| !bounds[i as usize].is_empty());
-        let binary = Binary::build(indices, &source);
-        (tree.nodes, tree.stats.depth) = collapse::collapse(&binary, leaf_size);
-        tree.items = binary.keys.iter().map(|key| key.item).collect();
+        let mut division = None;
+        if I::DIVISIBLE && config.quality == Quality::Full {
+            let root = PaddedBox::outward(&tree.frame, &whole);
+            let how = Division::new(items, Coordinates(tree.frame), &root);
+            let room = how.room(&references).min(link::MAX_ITEMS - met);
+            // Those that are added stand beside the others for a while.
+            let with_room = preparing + 2 * reference_bytes(room);
+            if room > 0 && with_room <= config.memory_limit {
+                preparing = with_room;
+                references.reserve_exact(room);
+                references.resize(met + room, Reference::BLANK);
+                division = Some(how);
+            }
+        }
+        let plan = Plan {
+            leaf_size: config.leaf_size.clamp(1, LARGEST_LEAF),
+            division,
+            // There is a second copy of nodes and items at the end, but no references any more.
+            bytes: (config.memory_limit - preparing).min(config.memory_limit / 2),
+            taken: AtomicU64::new(0),
+        };
+        let root = build::divide(Piece::new(&mut references, met, &codes), &plan);
+        drop((references, codes));
+        // A lone leaf needs a node, too.
+        let size = root.bytes() + size_of::<WideNode>() as u64;
+        if size > plan.bytes {
+            return Err(lacking((2 * size).max(preparing + size)));
+        }
+        let built = build::collect(root);
+        (tree.nodes, tree.items) = (built.nodes, built.items);
+        tree.stats.depth = built.depth;
         let links = tree.nodes.iter().flat_map(|node| {
             let used = node.boxes.planes[0].map(|x| x < f32::INFINITY);
             node.links.into_iter().zip(used)
         });
         let leaves = links.filter(|&(link, used)| used && link::items(link).is_some());
         tree.stats.leaves = leaves.count() as u64;
-        tree.stats.items = tree.items.len() as u64;
+        tree.stats.items = met as u64;
+        tree.stats.references = tree.items.len() as u64;
         tree.stats.nodes = tree.nodes.len() as u64;
         let [nodes, items] = tree.bytes();
         tree.stats.bytes = (nodes.len() + items.len()) as u64;
         Ok(tree)
     }
 
-    /// The most bytes that building takes at any time.
-    ///
-    /// A node with a free slot has leaves only, as has any last node of a branch: such nodes hold
-    /// more than `leaf_size` items each. All others have eight children, so each adds at least
-    /// seven to the number of branches, and every branch ends in an item of its own. Nodes are
-    /// counted twice because they are copied once.
-    fn memory_bound(items: usize, leaf_size: u32) -> u64 {
-        let n = items as u64;
-        let nodes = n / (u64::from(leaf_size) + 1) + n / 7 + 2;
-        let binary = size_of::<Key>() + size_of::<[Subtree; 2]>() + size_of::<u32>();
-        n * binary as u64 + 2 * nodes * size_of::<WideNode>() as u64
+    /// A box around all items, and how many of them are not empty.
+    fn measure<I: Items + ?Sized>(items: &I) -> Result<(Aabb, usize), WideTreeError> {
+        let unbounded = |item: &u32| !items.bounds(*item).is_bounded();
+        let indices = (0..items.count() as u32)
+            .into_par_iter()
+            .with_min_len(SHARE);
+        if let Some(item) = indices.clone().find_first(unbounded) {
+            return Err(WideTreeError::Unbounded(item as usize));
+        }
+        Ok(indices
+            .map(|item| items.bounds(item))
+            .filter(|bounds| !bounds.is_empty())
+            .fold(
+                || (Aabb::EMPTY, 0),
+                |(whole, count), bounds| (whole.union(bounds), count + 1),
+            )
+            .reduce(|| (Aabb::EMPTY, 0), |(a, m), (b, n)| (a.union(b), m + n)))
+    }
+
+    /// References to the items that are not empty; `met` is how many those are.
+    fn references<I: Items + ?Sized>(&self, items: &I, met: usize) -> Vec<Reference> {
+        let reference = |item: u32, bounds: &Aabb| {
+            Reference::new(PaddedBox::outward(&self.frame, bounds), item)
+        };
+        let indices = 0..items.count() as u32;
+        if met == items.count() {
+            let indices = indices.into_par_iter().with_min_len(SHARE);
+            return indices
+                .map(|item| reference(item, &items.bounds(item)))
+                .collect();
+        }
+        let all = indices.map(|item| (item, items.bounds(item)));
+        let with_extent = all.filter(|(_, bounds)| !bounds.is_empty());
+        with_extent
+            .map(|(item, bounds)| reference(item, &bounds))
+            .collect()
     }
 
     /// A box around all items.
@@ -238,6 +335,33 @@ impl WideTree {
             bytemuck::cast_slice(&self.nodes),
             bytemuck::cast_slice(&self.items),
         ]
+    }
+
+    /// The items, leaf by leaf. Places in this list are what a [`LeafVisitor`] is shown.
+    #[must_use]
+    pub fn items(&self) -> &[u32] {
+        &self.items
+    }
+
+    /// The places of the items of each leaf, in no particular order.
+    pub fn leaves(&self) -> impl Iterator<Item = std::ops::Range<usize>> + '_ {
+        self.nodes.iter().flat_map(|node| {
+            let used = node.boxes.planes[0].map(|x| x < f32::INFINITY);
+            let links = node.links.into_iter().zip(used);
+            links.filter_map(|(link, used)| link::items(link).filter(|_| used))
+        })
+    }
+
+    /// A point in the tree's coordinates, rounded to the nearest.
+    #[must_use]
+    pub fn local(&self, point: DVec3) -> [f32; 3] {
+        self.frame.point(point).to_array().map(|x| x as f32)
+    }
+
+    /// How the kernels run.
+    #[must_use]
+    pub const fn lanes(&self) -> Lanes {
+        self.lanes
     }
 
     /// The same tree with kernels that run as given. No answer depends on it.

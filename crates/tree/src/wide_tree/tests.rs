@@ -127,8 +127,20 @@ fn aimed(boxes: &[Aabb], whole: &Aabb, r: &mut Random) -> Ray {
     )
 }
 
-fn tree(boxes: &[Aabb]) -> WideTree {
-    WideTree::build(boxes, &WideTreeConfig::default()).unwrap()
+const QUALITIES: [Quality; 2] = [Quality::Fast, Quality::Full];
+
+/// Every kind of boxes with every quality.
+fn cases() -> impl Iterator<Item = (&'static str, Vec<Aabb>, Quality)> {
+    let all = zoo().into_iter();
+    all.flat_map(|(name, boxes)| QUALITIES.map(|quality| (name, boxes.clone(), quality)))
+}
+
+fn tree(boxes: &[Aabb], quality: Quality) -> WideTree {
+    let config = WideTreeConfig {
+        quality,
+        ..WideTreeConfig::default()
+    };
+    WideTree::build(boxes, &config).unwrap()
 }
 
 /// Where the line enters the box, as `f64` has it.
@@ -153,8 +165,12 @@ fn span(r: &mut Random, ray: &Ray, whole: &Aabb) -> Interval {
 #[test]
 fn every_item_stands_in_one_leaf_and_the_depth_is_bounded() {
     for (name, boxes) in zoo() {
-        for leaf_size in [1, 4, 8] {
+        for (leaf_size, quality) in [1, 4, 8]
+            .into_iter()
+            .flat_map(|n| QUALITIES.map(|q| (n, q)))
+        {
             let config = WideTreeConfig {
+                quality,
                 leaf_size,
                 ..WideTreeConfig::default()
             };
@@ -192,8 +208,8 @@ fn every_item_stands_in_one_leaf_and_the_depth_is_bounded() {
 #[test]
 fn no_box_on_the_line_is_left_out_and_few_others_are_shown() {
     let (mut met, mut shown) = (0, 0);
-    for (seed, (name, boxes)) in zoo().into_iter().enumerate() {
-        let tree = tree(&boxes);
+    for (seed, (name, boxes, quality)) in cases().enumerate() {
+        let tree = tree(&boxes, quality);
         let mut r = Random(100 + seed as u64, 0);
         for _ in 0..400 {
             let ray = aimed(&boxes, tree.bounds(), &mut r);
@@ -219,8 +235,8 @@ fn no_box_on_the_line_is_left_out_and_few_others_are_shown() {
 #[test]
 fn the_first_box_is_the_one_that_trying_all_of_them_finds() {
     let mut found = 0;
-    for (seed, (name, boxes)) in zoo().into_iter().enumerate() {
-        let vector = tree(&boxes);
+    for (seed, (name, boxes, quality)) in cases().enumerate() {
+        let vector = tree(&boxes, quality);
         let scalar = vector.clone().with_lanes(Lanes::Scalar);
         let mut r = Random(200 + seed as u64, 0);
         for _ in 0..1500 {
@@ -265,8 +281,8 @@ fn the_first_box_is_the_one_that_trying_all_of_them_finds() {
 #[test]
 fn no_box_in_a_region_is_left_out() {
     let mut overlapping = 0;
-    for (seed, (name, boxes)) in zoo().into_iter().enumerate() {
-        let tree = tree(&boxes);
+    for (seed, (name, boxes, quality)) in cases().enumerate() {
+        let tree = tree(&boxes, quality);
         let mut r = Random(300 + seed as u64, 0);
         let size = tree.bounds().half_size().max_element();
         for _ in 0..100 {
@@ -305,18 +321,20 @@ fn the_same_bytes_for_any_number_of_threads() {
         })
         .collect();
     boxes.extend((0..9_000).map(|_| around(r.point(1e-9), r.point(1e-12))));
-    let build = |threads: usize| {
+    let build = |threads: usize, quality| {
         let pool = rayon::ThreadPoolBuilder::new()
             .num_threads(threads)
             .build()
             .unwrap();
-        pool.install(|| tree(&boxes))
+        pool.install(|| tree(&boxes, quality))
     };
-    let one = build(1);
-    for threads in [2, 4] {
-        let other = build(threads);
-        assert!(one.bytes() == other.bytes());
-        assert_eq!(one.stats, other.stats);
+    for quality in QUALITIES {
+        let one = build(1, quality);
+        for threads in [2, 4] {
+            let other = build(threads, quality);
+            assert!(one.bytes() == other.bytes());
+            assert_eq!(one.stats, other.stats);
+        }
     }
 }
 
@@ -325,26 +343,28 @@ fn a_cluster_far_smaller_than_a_cell_is_still_divided() {
     let mut r = Random(4, 0);
     let mut boxes = vec![around(DVec3::splat(1e9), DVec3::ONE)];
     boxes.extend((0..5000).map(|_| around(r.point(1e-3), DVec3::splat(1e-6))));
-    let tree = tree(&boxes);
-    let mut cost = WalkCost::default();
-    // In f32 all of it is one point, but order and depth must not degenerate.
-    tree.all(
-        &Ray::new(-DVec3::X, DVec3::X),
-        Interval::ALL,
-        &mut cost,
-        |_| (),
-    );
-    assert!(
-        tree.stats.depth < 12 && tree.stats.nodes < 2500,
-        "{:?}",
-        tree.stats
-    );
+    for quality in QUALITIES {
+        let tree = tree(&boxes, quality);
+        let mut cost = WalkCost::default();
+        // In f32 all of it is one point, but order and depth must not degenerate.
+        tree.all(
+            &Ray::new(-DVec3::X, DVec3::X),
+            Interval::ALL,
+            &mut cost,
+            |_| (),
+        );
+        assert!(
+            tree.stats.depth < 12 && tree.stats.nodes < 2500,
+            "{:?}",
+            tree.stats
+        );
+    }
 }
 
 #[test]
 fn broken_rays_and_empty_spans_meet_nothing() {
     let boxes = [around(DVec3::ZERO, DVec3::ONE)];
-    let tree = tree(&boxes);
+    let tree = tree(&boxes, Quality::Full);
     let mut cost = WalkCost::default();
     let bad = [DVec3::ZERO, DVec3::NAN, DVec3::INFINITY];
     for direction in bad {
@@ -386,13 +406,154 @@ fn what_cannot_be_built_is_said() {
         error,
         WideTreeError::Memory { items: 100, limit: 1000, needed } if needed > 1000
     ));
-    for (name, boxes) in zoo() {
-        let stats = tree(&boxes).stats;
-        for leaf_size in [1, 4] {
-            assert!(
-                stats.bytes <= WideTree::memory_bound(boxes.len(), leaf_size),
-                "{name}"
-            );
+    // The limit decides at the byte, and in the same way however much is lacking.
+    for (name, boxes, quality) in cases() {
+        let build = |memory_limit: u64| {
+            let config = WideTreeConfig {
+                quality,
+                memory_limit,
+                ..WideTreeConfig::default()
+            };
+            WideTree::build(&boxes, &config)
+        };
+        let (mut limit, mut refusals) = (0, 0);
+        let tree = loop {
+            match build(limit) {
+                Ok(tree) => break tree,
+                Err(WideTreeError::Memory { needed, .. }) if needed > limit => limit = needed,
+                Err(other) => panic!("{name}: {other}"),
+            }
+            refusals += 1;
+            assert!(refusals <= 2, "{name}");
+        };
+        assert!(tree.stats.bytes <= limit, "{name}");
+        assert!(limit == 0 || build(limit - 1).is_err(), "{name}");
+    }
+}
+
+/// Segments: the thinnest things that a box can be large for.
+struct Segments(Vec<[DVec3; 2]>);
+
+impl Items for Segments {
+    fn count(&self) -> usize {
+        self.0.len()
+    }
+
+    fn bounds(&self, item: u32) -> Aabb {
+        Aabb::from_points(self.0[item as usize])
+    }
+
+    const DIVISIBLE: bool = true;
+
+    fn halves(
+        &self,
+        item: u32,
+        coordinates: &Coordinates,
+        within: &Aabb,
+        planes: DVec3,
+    ) -> [[Aabb; 2]; 3] {
+        let [a, b] = self.0[item as usize].map(|p| coordinates.point(p));
+        let line = Ray::new(a, b - a);
+        let part = |region: Aabb| {
+            let span = region.inflated(1e-14).clip(&line);
+            let span = span.intersection(&Interval::new(0.0, 1.0));
+            let ends = [span.start, span.end].map(|t| line.at(t));
+            let part = Aabb::from_points(ends).inflated(1e-14);
+            if span.is_empty() { Aabb::EMPTY } else { part }
+        };
+        [0, 1, 2].map(|axis| {
+            let (mut low, mut high) = (*within, *within);
+            low.max[axis] = planes[axis];
+            high.min[axis] = planes[axis];
+            [low, high].map(part)
+        })
+    }
+}
+
+fn segments() -> Segments {
+    let mut r = Random(7, 0);
+    let long = |r: &mut Random| {
+        let a = r.point(1.0);
+        [a, a + (DVec3::new(1.0, 0.7, 0.4) + r.point(0.1)) * 0.8]
+    };
+    let mut all: Vec<_> = (0..2500).map(|_| long(&mut r)).collect();
+    // Along an axis and along planes; one many times; among small ones.
+    all.extend((0..200).map(|_| {
+        let a = r.point(1.0);
+        [a, a + DVec3::X]
+    }));
+    all.extend((0..200).map(|_| {
+        let a = r.point(1.0);
+        [a, a + DVec3::new(0.5, 0.5, 0.0)]
+    }));
+    all.extend([all[0]; 100]);
+    all.extend((0..2000).map(|_| {
+        let a = r.point(1.0);
+        [a, a + r.point(0.01)]
+    }));
+    Segments(all)
+}
+
+#[test]
+fn parts_in_leaves_cover_what_is_divided() {
+    let items = segments();
+    let build = |threads: usize, quality| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads);
+        let config = WideTreeConfig {
+            quality,
+            ..WideTreeConfig::default()
+        };
+        let pool = pool.build().unwrap();
+        pool.install(|| WideTree::over(&items, &config).unwrap())
+    };
+    let tree = build(1, Quality::Full);
+    assert!(build(3, Quality::Full).bytes() == tree.bytes());
+    let count = items.count() as u64;
+    assert_eq!(tree.stats.items, count);
+    assert!(tree.stats.references > count + count / 10 && tree.stats.references <= count * 13 / 10);
+    let once = build(1, Quality::Fast);
+    assert_eq!((once.stats.references, once.stats.items), (count, count));
+    let mut boxes = vec![Vec::new(); items.count()];
+    for node in &tree.nodes {
+        for (lane, &child) in node.links.iter().enumerate() {
+            let plane = |side: usize| node.boxes.planes[side][lane];
+            let Some(places) = link::items(child).filter(|_| plane(0) < f32::INFINITY) else {
+                continue;
+            };
+            let listed = &tree.items[places];
+            for (i, &item) in listed.iter().enumerate() {
+                assert!(!listed[..i].contains(&item), "twice in a leaf");
+                boxes[item as usize].push([0, 1, 2, 3, 4, 5].map(plane));
+            }
         }
     }
+    for (ends, boxes) in items.0.iter().zip(&boxes) {
+        for i in 0..=200 {
+            let point = ends[0] + (ends[1] - ends[0]) * (f64::from(i) / 200.0);
+            let p = tree.frame.point(point).to_array();
+            let holds = |b: &[f32; 6]| {
+                (0..3).all(|axis| {
+                    f64::from(b[axis]) <= p[axis] + 1e-15 && p[axis] - 1e-15 <= b[axis + 3].into()
+                })
+            };
+            assert!(boxes.iter().any(holds), "{ends:?} {i}");
+        }
+    }
+    // One by one, a line is shown fewer of them than if they were whole.
+    let config = WideTreeConfig {
+        leaf_size: 1,
+        ..WideTreeConfig::default()
+    };
+    let boxes: Vec<Aabb> = (0..count as u32).map(|item| items.bounds(item)).collect();
+    let shown = |tree: &WideTree| {
+        let (mut r, mut cost) = (Random(8, 0), WalkCost::default());
+        for _ in 0..300 {
+            let ray = Ray::new(r.point(1.0), r.point(1.0));
+            tree.all(&ray, Interval::ALL, &mut cost, |_| ());
+        }
+        cost.items
+    };
+    let parts = shown(&WideTree::over(&items, &config).unwrap());
+    let whole = shown(&WideTree::build(&boxes, &config).unwrap());
+    assert!(parts < whole, "{parts} {whole}");
 }

@@ -1,0 +1,1 @@
+"""Writes a scene in the language of each program."""
