@@ -303,6 +303,20 @@ fn evaluate_at(words: &[u32], at: usize, truth: &impl Fn(FaceId) -> bool) -> boo
     !stop_at
 }
 
+/// The faces of an expression that is a single literal or a single operation over nothing but
+/// literals, and the value of one of them that decides the whole (for a literal, either: `false`).
+#[must_use]
+pub fn flat(words: &[u32]) -> Option<(bool, &[u32])> {
+    let (first, rest) = words.split_first()?;
+    let absorbing = match first & TAG_MASK {
+        LITERAL => return rest.is_empty().then_some((false, words)),
+        AND => false,
+        _ => true,
+    };
+    let all_literals = rest.iter().all(|word| word & TAG_MASK == LITERAL);
+    all_literals.then_some((absorbing, rest))
+}
+
 /// The lowest face that takes part in the expression's change from `before` to `after`.
 ///
 /// A face takes part if it and every operation above it changes in the same direction as the whole;
@@ -459,6 +473,11 @@ mod tests {
             if tree.write(&mut writer).is_none() {
                 let code = writer.finish();
                 let at = |truth: u32| move |f: FaceId| truth >> f.0 & 1 == 1;
+                if let Some((absorbing, literals)) = flat(code.words()) {
+                    prop_assert_eq!(literals.len(), code.literals());
+                    let decided = faces(literals).any(|f| at(before)(f) == absorbing);
+                    prop_assert!(!decided || evaluate(code.words(), &at(before)) == absorbing);
+                }
                 let face = changed_face(code.words(), &at(before), &at(after));
                 prop_assert_eq!(face.is_some(), tree.value(before) != tree.value(after));
                 if let Some(face) = face {

@@ -14,7 +14,7 @@ mod plane_index;
 mod sides;
 
 pub use code::{
-    Code, Constant, Term, changed_face, evaluate, faces, operands, reduce, term, truth_on,
+    Code, Constant, Term, changed_face, evaluate, faces, flat, operands, reduce, term, truth_on,
 };
 pub use lower::{Face, Lowered, LoweredScene, Lowering, MeshOperand};
 pub use operand::Operand;

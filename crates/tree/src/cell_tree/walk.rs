@@ -20,12 +20,21 @@ pub(crate) struct Waiting {
 /// The line as the slab test wants it.
 pub(crate) struct Slabs {
     origin: DVec3,
+    /// Infinite where the line is parallel to the slab, or so nearly that it leaves it beyond any
+    /// parameter that matters.
     inverse: DVec3,
-    parallel: [bool; 3],
-    /// Whether the line goes down the axis.
-    backward: [bool; 3],
+    /// By how much cells are grown on every side.
     margin: f64,
+    /// The same, negative on the axes that the line goes down.
+    ahead: DVec3,
+    /// A bit for each of those axes.
+    flip: usize,
 }
+
+/// For each axis the octants of a divided cell that lie in the half which the line enters first;
+/// octants are numbered from the first that it enters.
+const NEAR: [u32; 3] = [0b0101_0101, 0b0011_0011, 0b0000_1111];
+const ALL: u32 = 0b1111_1111;
 
 /// The larger of two numbers, and the smaller, where neither is NaN: one instruction each.
 #[inline]
@@ -42,15 +51,14 @@ impl Slabs {
     /// For the cells of a cube of this size.
     #[inline]
     pub(crate) fn new(ray: &Ray, root_size: f64) -> Self {
-        let d = ray.direction;
+        let inverse = ray.direction.recip();
+        let margin = root_size * (0.5 * CellTree::CONTENT_MARGIN);
         Self {
             origin: ray.origin,
-            inverse: d.recip(),
-            // A reciprocal that overflows is as good as parallel: the line leaves the slab beyond
-            // any parameter that matters.
-            parallel: d.to_array().map(|x| !x.recip().is_finite()),
-            backward: d.to_array().map(|x| x < 0.0),
-            margin: root_size * (0.5 * CellTree::CONTENT_MARGIN),
+            inverse,
+            margin,
+            ahead: DVec3::splat(margin).copysign(inverse),
+            flip: inverse.is_negative_bitmask() as usize,
         }
     }
 
@@ -60,14 +68,14 @@ impl Slabs {
     fn slab(&self, axis: usize, min: f64, size: f64) -> Interval {
         let low = min - self.margin - self.origin[axis];
         let high = min + size + self.margin - self.origin[axis];
-        if self.parallel[axis] {
+        if self.inverse[axis].is_infinite() {
             if low > 0.0 || high < 0.0 {
                 return Interval::EMPTY;
             }
             return Interval::ALL;
         }
         let (a, b) = (low * self.inverse[axis], high * self.inverse[axis]);
-        if self.backward[axis] {
+        if self.inverse[axis] < 0.0 {
             Interval::new(b, a)
         } else {
             Interval::new(a, b)
@@ -81,34 +89,17 @@ impl Slabs {
         })
     }
 
-    /// The slabs of a divided cell's halves on one axis, each with the number of the half, the one
-    /// that the line enters last first.
+    /// Where the line leaves the halves of a divided cell that it enters first, and where it enters
+    /// the others, by axis; NaN for a half whose face the line runs along at the margin's end: the
+    /// other half holds it then.
     #[inline]
-    fn halves(&self, axis: usize, min: f64, size: f64) -> [Half; 2] {
-        let half = |upper: usize| {
-            let min = if upper == 1 { min + size } else { min };
-            let Interval { start, end } = self.slab(axis, min, size);
-            Half {
-                start,
-                end,
-                min,
-                upper,
-            }
-        };
-        let near = usize::from(self.backward[axis]);
-        [half(1 - near), half(near)]
+    fn halves(&self, middle: DVec3) -> (DVec3, DVec3) {
+        let middle = middle - self.origin;
+        (
+            (middle + self.ahead) * self.inverse,
+            (middle - self.ahead) * self.inverse,
+        )
     }
-}
-
-/// Half of a divided cell on one axis.
-#[derive(Clone, Copy)]
-struct Half {
-    /// Where the line enters and leaves it.
-    start: f64,
-    end: f64,
-    /// Its lower side.
-    min: f64,
-    upper: usize,
 }
 
 impl CellTree {
@@ -162,34 +153,45 @@ impl CellTree {
                 Node::Empty(_) => {}
                 Node::Occupied(leaf) => *limit = limit.min(visit(leaf, cell.span)),
                 Node::Divided(block) => {
-                    let size = cell.size * 0.5;
                     let children = &self.blocks[block as usize];
-                    let x = slabs.halves(0, cell.min.x, size);
-                    let y = slabs.halves(1, cell.min.y, size);
-                    let z = slabs.halves(2, cell.min.z, size);
-                    // Which octants the line meets nobody can guess, so all are decided without
-                    // a branch. Octants are numbered from the last that the line enters.
-                    let mut spans = [Interval::EMPTY; 8];
-                    let mut met = 0_u32;
-                    for octant in 0..8 {
-                        let (x, y, z) = (&x[octant & 1], &y[octant >> 1 & 1], &z[octant >> 2]);
-                        let start = later(later(cell.span.start, z.start), later(y.start, x.start));
-                        let end = earlier(earlier(cell.span.end, z.end), earlier(y.end, x.end));
-                        let node = children[x.upper | y.upper << 1 | z.upper << 2];
-                        spans[octant] = Interval { start, end };
-                        let is_met = (start <= end) & !Node::is_empty(node);
-                        met |= u32::from(is_met) << octant;
+                    let size = cell.size * 0.5;
+                    let middle = cell.min + size;
+                    // On its outer sides a child is as large as its parent, whose part of the line
+                    // is known: only the planes between the halves cut it.
+                    let (near_ends, far_starts) = slabs.halves(middle);
+                    let mut met = ALL;
+                    for axis in 0..3 {
+                        let near = u32::from(cell.span.start <= near_ends[axis]) * NEAR[axis];
+                        let far = u32::from(far_starts[axis] <= cell.span.end) * !NEAR[axis];
+                        met &= near | far;
                     }
+                    let corners = [cell.min.to_array(), middle.to_array()];
+                    // The nearest comes last and lies on top then.
                     while met != 0 {
-                        let octant = met.trailing_zeros() as usize;
-                        met &= met - 1;
-                        let (x, y, z) = (&x[octant & 1], &y[octant >> 1 & 1], &z[octant >> 2]);
-                        stack.push(Waiting {
-                            node: children[x.upper | y.upper << 1 | z.upper << 2],
-                            min: DVec3::new(x.min, y.min, z.min),
-                            size,
-                            span: spans[octant],
-                        });
+                        let near_to_far = met.ilog2() as usize;
+                        met ^= 1 << near_to_far;
+                        let octant = near_to_far ^ slabs.flip;
+                        let node = children[octant];
+                        if Node::is_empty(node) {
+                            continue;
+                        }
+                        let Interval { mut start, mut end } = cell.span;
+                        for axis in 0..3 {
+                            if near_to_far >> axis & 1 == 1 {
+                                start = later(start, far_starts[axis]);
+                            } else {
+                                end = earlier(end, near_ends[axis]);
+                            }
+                        }
+                        if start <= end {
+                            let min = |axis: usize| corners[octant >> axis & 1][axis];
+                            stack.push(Waiting {
+                                node,
+                                min: DVec3::new(min(0), min(1), min(2)),
+                                size,
+                                span: Interval { start, end },
+                            });
+                        }
                     }
                 }
             }

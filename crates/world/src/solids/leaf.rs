@@ -77,6 +77,15 @@ impl<'a> LeafView<'a> {
         &self.words[range(object.expression)]
     }
 
+    /// The literals of a leaf that holds one object, whose expression is one operation over
+    /// literals, one for each surface; with the value of one literal that decides it.
+    pub(super) fn flat(&self) -> Option<(bool, &[u32])> {
+        let [object] = self.objects else { return None };
+        let (absorbing, literals) = csg::flat(self.expression(object))?;
+        let all = self.clip(object).is_none() && literals.len() == self.surfaces.len();
+        all.then_some((absorbing, literals))
+    }
+
     /// `None` where all of the boundary counts.
     pub(super) fn clip(&self, object: &LeafObject) -> Option<&[u32]> {
         let words = &self.words[range(object.clip)];

@@ -5,7 +5,8 @@
 //! parameters mean coincidence because coincident surfaces are one (see `surface::table`).
 
 use octray_geometry::FaceId;
-use octray_geometry::csg::{changed_face, evaluate};
+use octray_geometry::csg::{self, changed_face, evaluate};
+use octray_math::Interval;
 
 use super::leaf::{LeafObject, LeafView};
 use super::{LeafVisit, Scratch, Solids};
@@ -167,15 +168,8 @@ impl Solids {
             counters,
         } = leaf;
         scratch.events.clear();
-        self.place(
-            view,
-            line,
-            span.start,
-            scratch,
-            counters,
-            Some(span.end.min(limit)),
-        );
-        if scratch.events.is_empty() {
+        let part = Interval::new(span.start, span.end.min(limit));
+        if !self.place_until_decided(view, line, part, scratch, counters) {
             return limit;
         }
         if scratch.events.len() > 1 {
@@ -214,6 +208,33 @@ impl Solids {
         limit
     }
 
+    /// Puts the surfaces of the leaf on their sides at the start of `part` and collects the crossings
+    /// in it. `false` if nothing changes there: of an intersection, one operand that is false all
+    /// along tells so, and nobody needs to know where the others are crossed.
+    fn place_until_decided(
+        &self,
+        view: &LeafView<'_>,
+        line: &Line,
+        part: Interval,
+        scratch: &mut Scratch,
+        counters: &mut Counters,
+    ) -> bool {
+        let Some((absorbing, literals)) = view.flat() else {
+            self.place(view, line, part.start, scratch, counters, Some(part.end));
+            return !scratch.events.is_empty();
+        };
+        for face in csg::faces(literals) {
+            let surface = self.faces[face.0 as usize].surface.0;
+            let found = scratch.events.len();
+            self.place_one(surface, line, part.start, scratch, counters, Some(part.end));
+            let is_constant = scratch.events.len() == found;
+            if is_constant && self.truth(&scratch.negative, face) == absorbing {
+                return false;
+            }
+        }
+        !scratch.events.is_empty()
+    }
+
     /// Puts every surface of the leaf on its side at `start`, and collects the crossings from there
     /// to `end` if one is given.
     fn place(
@@ -226,23 +247,37 @@ impl Solids {
         end: Option<f64>,
     ) {
         for &surface in view.surfaces {
-            let slot = self.roots(surface, line, scratch, counters);
-            let Scratch {
-                roots,
-                events,
-                negative,
-                ..
-            } = scratch;
-            let (ahead, side) = slot.ahead(roots, start);
-            negative[surface as usize] = side;
-            if let Some(end) = end {
-                for root in roots[ahead].iter().take_while(|r| r.s <= end) {
-                    events.push(Event {
-                        s: root.s,
-                        surface,
-                        triangle: root.triangle,
-                    });
-                }
+            self.place_one(surface, line, start, scratch, counters, end);
+        }
+    }
+
+    /// [`Solids::place`] for one surface.
+    #[inline]
+    fn place_one(
+        &self,
+        surface: u32,
+        line: &Line,
+        start: f64,
+        scratch: &mut Scratch,
+        counters: &mut Counters,
+        end: Option<f64>,
+    ) {
+        let slot = self.roots(surface, line, scratch, counters);
+        let Scratch {
+            roots,
+            events,
+            negative,
+            ..
+        } = scratch;
+        let (ahead, side) = slot.ahead(roots, start);
+        negative[surface as usize] = side;
+        if let Some(end) = end {
+            for root in roots[ahead].iter().take_while(|r| r.s <= end) {
+                events.push(Event {
+                    s: root.s,
+                    surface,
+                    triangle: root.triangle,
+                });
             }
         }
     }
