@@ -17,6 +17,8 @@ const LIMIT_ROUNDING: f64 = 1.0 / (1u64 << 49) as f64;
 pub(crate) struct Place {
     pub(crate) frame: SceneFrame,
     center: DVec3,
+    /// A 512th to a 256th of the scene's size, a power of two.
+    step: f64,
 }
 
 impl Place {
@@ -39,17 +41,21 @@ impl Place {
         } else {
             bounds.center() - frame.origin
         };
-        Self { frame, center }
+        let step = libm::ldexp(1.0, libm::ilogb(frame.size) - 8);
+        Self {
+            frame,
+            center,
+            step,
+        }
     }
 
     /// `shift` to within a 512th of the scene's size, as a short number: a line whose coordinates
     /// are short numbers then has an exact origin, and crosses the planes that meet in an edge at
     /// one parameter if it goes through the edge.
     fn short(&self, shift: f64) -> f64 {
-        let step = libm::ldexp(1.0, libm::ilogb(self.frame.size) - 8);
-        let steps = libm::rint(shift / step);
+        let steps = libm::rint(shift / self.step);
         if steps.is_finite() {
-            steps * step
+            steps * self.step
         } else {
             shift
         }
