@@ -324,9 +324,15 @@ impl Grid {
         let d = ray.direction;
         let start = ray.at(span.start).clamp(self.bounds.min, self.bounds.max);
         let mut index = self.containing(start);
-        // Where the line leaves the voxel on each axis. Computed from the face, not summed up.
+        // Where the line leaves the voxel on each axis. Computed from the face, not summed up. A line that
+        // runs beside the grid, inside its margin, is in there until it leaves the margin.
         let exit = |axis: usize, index: u32| {
-            let face = self.face(axis, index + u32::from(d[axis] > 0.0));
+            let face = match (d[axis] > 0.0, index) {
+                (true, i) if i + 1 == self.resolution[axis] => self.bounds.max[axis] + margin,
+                (true, i) => self.face(axis, i + 1),
+                (false, 0) => self.bounds.min[axis] - margin,
+                (false, i) => self.face(axis, i),
+            };
             let s = (face - ray.origin[axis]) / d[axis];
             if d[axis] == 0.0 || s.is_nan() {
                 f64::INFINITY

@@ -8,7 +8,7 @@ use octray_geometry::mesh::{
     TriangleQuery, TriangleSearch, TriangleTree,
 };
 use octray_geometry::{FaceId, MaterialId, SceneFrame, Sheet, TriangleMesh};
-use octray_math::Interval;
+use octray_math::{DVec3, Interval};
 use octray_scene::{ObjectId, Scene, Shape};
 use octray_tree::WideTreeError;
 
@@ -78,7 +78,7 @@ impl Sheets {
                 world_from_mesh,
             }) = &object.shape
             {
-                let placement = Placement::new(&(frame.scene_from_world() * *world_from_mesh));
+                let placement = Placement::new(&(frame.scene_from_world() * **world_from_mesh));
                 let first_vertex = positions.len() as u32;
                 positions.extend(placement.positions(mesh));
                 let first_triangle = triangles.len() as u32;
@@ -226,6 +226,14 @@ impl Sheets {
                 visit(&self.crossing(triangle, hit))
             });
         counters.add_search(&cost);
+    }
+
+    /// The unit normal of a triangle, zero if it has no area.
+    pub(crate) fn normal(&self, face: FaceId) -> Option<DVec3> {
+        let triangle = self.triangle(face)?;
+        let part = self.part(triangle);
+        part.placement
+            .normal(&part.mesh, triangle - part.first_triangle)
     }
 
     /// Shading data of a triangle that the line crosses.

@@ -61,11 +61,16 @@ impl<'a> Stepper<'a> {
     pub(super) fn leave(&mut self, cell: CellKey, limit: f64) -> Option<usize> {
         let bounds = cell.bounds(self.root);
         let d = self.ray.direction;
+        let last_cell = (1_u32 << cell.depth) - 1;
         let exit = |axis: usize| {
+            // A line may run beside the cube, inside its margin, and away from it: it is in there until
+            // it leaves the margin.
             let face = if d[axis] > 0.0 {
-                bounds.max[axis]
+                let is_last = cell.index[axis] == last_cell;
+                bounds.max[axis] + if is_last { self.margin } else { 0.0 }
             } else {
-                bounds.min[axis]
+                let is_first = cell.index[axis] == 0;
+                bounds.min[axis] - if is_first { self.margin } else { 0.0 }
             };
             let s = (face - self.ray.origin[axis]) / d[axis];
             // Parallel, or so nearly that the face is out of reach.

@@ -95,6 +95,40 @@ fn grid_resolutions_follow_the_shape_and_the_limit() {
     assert_eq!(Grid::resolution_for(&point, 5, 100), [1; 3]);
 }
 
+/// Contents are decided for cells grown by a margin, so a line in the margin belongs to the cells beside it,
+/// also while it moves away from them.
+#[test]
+fn lines_beside_the_cells_and_away_from_them_visit_those_they_pass() {
+    let points: Vec<DVec3> = (0..8)
+        .flat_map(|i| [-1.0, 1.0].map(|side| DVec3::new(side, -side, f64::from(2 * i - 7) / 7.0)))
+        .collect();
+    let tree = tree(&points, 4);
+    let bounds = *tree.root();
+    let (grid, _) = Grid::build(bounds, points.clone(), &Points, [8; 3], u64::MAX);
+    let beside = bounds.size().x * CellTree::CONTENT_MARGIN / 8.0;
+    for (side, rise) in [(-1.0, 1.0), (-1.0, -1.0), (1.0, 1.0), (1.0, -1.0)] {
+        let out = DVec3::new(side, -side, 0.0);
+        let edge = bounds.center() + out * (0.5 * bounds.size().x + beside);
+        let drift = out * 1e-17;
+        for outwards in [drift, -drift] {
+            let ray = Ray::new(edge - DVec3::Z * (rise * 3.0), DVec3::Z * rise + outwards);
+            let within = Interval::new(0.0, f64::INFINITY);
+            let expected: Vec<u32> = ordered(&tree, &ray, within).iter().map(|v| v.0).collect();
+            assert!(expected.len() >= 4, "{expected:?}");
+            for (name, found, _) in all_others(&tree, &ray, within) {
+                let found: Vec<u32> = found.iter().map(|v| v.0).collect();
+                assert_eq!(found, expected, "{name}");
+            }
+            let mut voxels = 0;
+            grid.walk(&ray, within, |_, _| {
+                voxels += 1;
+                f64::INFINITY
+            });
+            assert_eq!(voxels, 8);
+        }
+    }
+}
+
 fn point() -> impl Strategy<Value = DVec3> {
     let x = || prop_oneof![-1.0..1.0f64, (-4..=4i32).prop_map(|i| f64::from(i) * 0.25)];
     (x(), x(), x()).prop_map(|(x, y, z)| DVec3::new(x, y, z))

@@ -6,9 +6,9 @@ use octray_kernels::beam::GROUP;
 use octray_kernels::{BeamTriangles, Candidates, Kernels, RayCandidates};
 use octray_tree::wide_tree::{BEAM, Beam, BeamVisitor, GROUPS, PendingBeam};
 
+use super::divide::Triangles;
 use super::nearest::{NearestTriangle, TriangleQuery};
 use super::packed::PackedTriangles;
-use super::wide::Exact;
 use super::{TriangleHit, TriangleRay};
 
 /// What is done with a line of a beam and a triangle that it may cross.
@@ -199,14 +199,14 @@ impl Default for BeamMemory {
 
 /// Gathers the triangles of each line; see [`super::nearest`].
 pub(super) struct BeamNearest<'a> {
-    exact: Exact<'a>,
+    exact: Triangles<'a>,
     queries: &'a [TriangleQuery],
     known: &'a mut Known,
 }
 
 impl<'a> BeamNearest<'a> {
     pub(super) fn new(
-        exact: Exact<'a>,
+        exact: Triangles<'a>,
         queries: &'a [TriangleQuery],
         known: &'a mut Known,
     ) -> Self {
@@ -301,7 +301,7 @@ impl Take for BeamNearest<'_> {
 
 /// Asks for each line whether any triangle counts.
 pub(super) struct BeamAny<'a, F> {
-    pub(super) exact: Exact<'a>,
+    pub(super) exact: Triangles<'a>,
     pub(super) queries: &'a [TriangleQuery],
     pub(super) met: [bool; BEAM],
     /// Of the line's index, the triangle and the crossing.

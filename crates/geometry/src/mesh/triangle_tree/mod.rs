@@ -2,8 +2,10 @@
 
 mod beam;
 mod cells;
+mod divide;
 mod membership;
 mod nearest;
+mod occupied;
 mod packed;
 mod search;
 mod volumes;
@@ -18,11 +20,12 @@ use octray_tree::{Partition, WideTreeError, WideTreeStats};
 
 use super::{TriangleHit, TriangleRay};
 use cells::TriangleCells;
+use divide::Triangles;
 pub use membership::TriangleMarks;
 pub use nearest::{NearestTriangle, TriangleQuery};
 pub use search::{SearchCost, SearchMemory, TriangleSearch};
 use volumes::ObjectVolumes;
-use wide::{Exact, WideTriangles};
+use wide::WideTriangles;
 
 /// Triangles of world coordinates with a structure that finds those on a line, or without one: the
 /// oracle.
@@ -120,8 +123,8 @@ impl TriangleTree {
     }
 
     #[inline]
-    fn exact(&self) -> Exact<'_> {
-        Exact {
+    fn exact(&self) -> Triangles<'_> {
+        Triangles {
             positions: &self.positions,
             triangles: &self.triangles,
         }
@@ -242,8 +245,9 @@ impl TriangleTree {
     /// Shows `visit` the triangles that the line crosses in `span` (ends included), until nothing
     /// better can come: `visit(triangle, hit, end)` returns the new end of the span, or `end`.
     ///
-    /// All triangles up to the final end are shown, those at the end itself too, each once and in no
-    /// particular order. `cost.walk.items` counts triangles tested.
+    /// All triangles up to the final end are shown, those at the end itself too, in no particular
+    /// order; one that stands in several leaves of the wide octree may be shown more than once.
+    /// `cost.walk.items` counts triangles tested.
     #[inline]
     pub fn closest(
         &self,
@@ -394,10 +398,23 @@ impl TriangleTree {
         cost: &mut SearchCost,
         mut visit: impl FnMut(u32, &TriangleHit),
     ) {
+        let once = self
+            .tree_stats()
+            .is_none_or(|tree| tree.references == tree.items);
+        let mut found: Vec<(u32, TriangleHit)> = Vec::new();
         self.closest(ray, span, memory, cost, |triangle, hit, end| {
-            visit(triangle, hit);
+            if once {
+                visit(triangle, hit);
+            } else {
+                found.push((triangle, *hit));
+            }
             end
         });
+        found.sort_unstable_by_key(|(triangle, _)| *triangle);
+        found.dedup_by_key(|(triangle, _)| *triangle);
+        for (triangle, hit) in &found {
+            visit(*triangle, hit);
+        }
     }
 
     /// Shows `test` the triangles that may lie on the line in `span`, each once; it returns the new

@@ -10,7 +10,8 @@ use octray_kernels::{Candidates, Kernels};
 use octray_math::{Interval, Ray};
 use octray_tree::{LeafVisitor, LocalLine};
 
-use super::wide::{Exact, Leaves};
+use super::divide::Triangles;
+use super::wide::Leaves;
 use super::{TriangleRay, are_coplanar};
 
 /// A line whose nearest triangle is wanted.
@@ -33,7 +34,7 @@ impl TriangleQuery {
 
     /// Whether the line leaves the triangle's plane.
     #[inline]
-    pub(super) fn leaves(&self, triangle: u32, exact: &Exact<'_>) -> bool {
+    pub(super) fn leaves(&self, triangle: u32, exact: &Triangles<'_>) -> bool {
         let leaves =
             |from| from == triangle || are_coplanar(exact.corners(from), exact.corners(triangle));
         self.departed.is_some_and(leaves)
@@ -72,7 +73,7 @@ struct Waiting {
 /// Gathers triangles along one line.
 pub(super) struct Nearest<'a> {
     leaves: Leaves<'a>,
-    exact: Exact<'a>,
+    exact: Triangles<'a>,
     query: &'a TriangleQuery,
     local: &'a LocalLine,
     /// The local parameter from which on a crossing comes after the start for certain.
@@ -87,7 +88,7 @@ impl<'a> Nearest<'a> {
     #[inline(always)]
     pub(super) fn new(
         leaves: Leaves<'a>,
-        exact: Exact<'a>,
+        exact: Triangles<'a>,
         query: &'a TriangleQuery,
         local: &'a LocalLine,
     ) -> Self {

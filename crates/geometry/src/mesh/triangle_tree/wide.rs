@@ -5,11 +5,12 @@ use std::ops::{ControlFlow, Range};
 use octray_kernels::{
     BeamTriangles, Candidates, Kernels, Lanes, Scalar, TriangleLine, Vector, dispatch,
 };
-use octray_math::{Aabb, DVec3, Interval, Ray};
+use octray_math::{Interval, Ray};
 use octray_tree::wide_tree::{BEAM, Beam, BeamLine, PendingBeam};
 use octray_tree::{LeafVisitor, LocalLine, WideTree, WideTreeConfig, WideTreeError};
 
 use super::beam::{BeamAny, BeamLeaves, BeamMemory, BeamNearest, Take};
+use super::divide::Triangles;
 use super::nearest::{Nearest, NearestTriangle, TriangleQuery};
 use super::packed::PackedTriangles;
 use super::search::{SearchCost, SearchMemory};
@@ -35,22 +36,6 @@ const WIDEST_TO_LAMP: f32 = 0.06;
 enum Meeting {
     Start,
     End,
-}
-
-/// Triangles as they are: corners as indices into positions.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Exact<'a> {
-    pub(super) positions: &'a [DVec3],
-    pub(super) triangles: &'a [[u32; 3]],
-}
-
-impl Exact<'_> {
-    #[inline]
-    pub(super) fn corners(&self, triangle: u32) -> [DVec3; 3] {
-        let [a, b, c] = self.triangles[triangle as usize];
-        let p = self.positions;
-        [p[a as usize], p[b as usize], p[c as usize]]
-    }
 }
 
 /// Proposes triangles of leaves.
@@ -102,7 +87,7 @@ impl<'a> Leaves<'a> {
 /// Shows every triangle that the line crosses.
 struct Crossed<'a, F> {
     leaves: Leaves<'a>,
-    exact: Exact<'a>,
+    exact: Triangles<'a>,
     line: TriangleRay,
     local: &'a LocalLine,
     span: Interval,
@@ -144,20 +129,19 @@ impl WideTriangles {
     ///
     /// # Errors
     /// It would be too large.
-    pub(super) fn build(exact: &Exact<'_>, config: &WideTreeConfig) -> Result<Self, WideTreeError> {
-        let count = exact.triangles.len() as u32;
-        let around = |triangle| Aabb::from_points(exact.corners(triangle));
-        let bounds: Vec<Aabb> = (0..count).map(around).collect();
-        let tree = WideTree::build(&bounds, config)?;
+    pub(super) fn build(
+        exact: &Triangles<'_>,
+        config: &WideTreeConfig,
+    ) -> Result<Self, WideTreeError> {
+        let tree = WideTree::over(exact, config)?;
         let needed = tree.stats().bytes + PackedTriangles::bytes_for(tree.items().len());
         if needed > config.memory_limit {
             return Err(WideTreeError::Memory {
-                items: bounds.len(),
+                items: exact.triangles.len(),
                 needed,
                 limit: config.memory_limit,
             });
         }
-        drop(bounds);
         let packed = PackedTriangles::new(&tree, |triangle| exact.corners(triangle));
         Ok(Self { tree, packed })
     }
@@ -176,7 +160,7 @@ impl WideTriangles {
     #[inline]
     pub(super) fn crossed(
         &self,
-        exact: Exact<'_>,
+        exact: Triangles<'_>,
         ray: &Ray,
         span: Interval,
         memory: &mut SearchMemory,
@@ -212,7 +196,7 @@ impl WideTriangles {
     /// The nearest triangle on each line.
     pub(super) fn nearest(
         &self,
-        exact: Exact<'_>,
+        exact: Triangles<'_>,
         queries: &[TriangleQuery],
         memory: &mut SearchMemory,
         answer: impl FnMut(usize, Option<NearestTriangle>, SearchCost),
@@ -228,7 +212,7 @@ impl WideTriangles {
     fn nearest_with(
         &self,
         kernels: impl Kernels,
-        exact: Exact<'_>,
+        exact: Triangles<'_>,
         queries: &[TriangleQuery],
         memory: &mut SearchMemory,
         mut answer: impl FnMut(usize, Option<NearestTriangle>, SearchCost),
@@ -265,7 +249,7 @@ impl WideTriangles {
     /// Whether `counts` is true of any triangle on each line.
     pub(super) fn any_of(
         &self,
-        exact: Exact<'_>,
+        exact: Triangles<'_>,
         queries: &[TriangleQuery],
         memory: &mut SearchMemory,
         counts: impl FnMut(usize, u32, &TriangleHit) -> bool,
@@ -282,7 +266,7 @@ impl WideTriangles {
     fn any_with(
         &self,
         kernels: impl Kernels,
-        exact: Exact<'_>,
+        exact: Triangles<'_>,
         queries: &[TriangleQuery],
         memory: &mut SearchMemory,
         mut counts: impl FnMut(usize, u32, &TriangleHit) -> bool,
@@ -379,7 +363,7 @@ impl WideTriangles {
     fn any_one(
         &self,
         kernels: impl Kernels,
-        exact: Exact<'_>,
+        exact: Triangles<'_>,
         query: &TriangleQuery,
         memory: &mut SearchMemory,
         cost: &mut SearchCost,
@@ -418,7 +402,7 @@ impl WideTriangles {
     fn nearest_one(
         &self,
         kernels: impl Kernels,
-        exact: Exact<'_>,
+        exact: Triangles<'_>,
         query: &TriangleQuery,
         memory: &mut SearchMemory,
         cost: &mut SearchCost,
