@@ -118,12 +118,11 @@ impl<L: Lane> Edges<L> {
         let a = L::load(token, &group.slopes[0][line..]);
         let b = L::load(token, &group.slopes[1][line..]);
         let mut values = [a; 3];
-        for i in 0..3 {
-            let normal = &triangles.normals[i];
+        for (value, normal) in values.iter_mut().zip(&triangles.normals) {
             let n0 = L::all(token, normal[0][triangle]);
             let n1 = L::all(token, normal[1][triangle]);
             let n2 = L::all(token, normal[2][triangle]);
-            values[i] = n0 * a + n1 * b + n2;
+            *value = n0 * a + n1 * b + n2;
         }
         Self {
             values,

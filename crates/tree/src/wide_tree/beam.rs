@@ -147,7 +147,9 @@ impl WideTree {
         let down = d[main] < 0.0;
         let origin = self.frame.point(through);
         let distance = origin.abs().max_element();
-        if !(distance <= FARTHEST) {
+        // NaN is not near.
+        let is_near = distance <= FARTHEST;
+        if !is_near {
             return None;
         }
         let (x, y) = ((main + 1) % 3, (main + 2) % 3);
