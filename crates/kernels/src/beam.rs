@@ -24,9 +24,14 @@
 //! 4. *Depths* of corners are off by less than `p`. That of a crossing is interpolated with the edge
 //!    functions; the bound is that of [`crate::triangles`].
 
+mod boxes;
+mod edges;
+
 use fearless_simd::{Simd, SimdBase, SimdMask, f32x8, f32x16};
 
-use crate::lane::Lane;
+use boxes::{BoxSides, box_verdict, passes};
+use edges::{Edges, cull, prepare};
+
 use crate::slab::{Boxes8, Scalar, Vector, round_up};
 use crate::triangles::TriangleLine;
 
@@ -103,6 +108,36 @@ impl BeamFrame {
     }
 }
 
+/// Where some lines of a beam are.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Bounds {
+    /// The smallest and largest `a`, then `b`.
+    pub slopes: [[f32; 2]; 2],
+    /// The largest depth at which one counts.
+    pub end: f32,
+}
+
+impl Bounds {
+    /// No line.
+    pub const NONE: Self = Self {
+        slopes: [[f32::INFINITY, f32::NEG_INFINITY]; 2],
+        end: f32::NEG_INFINITY,
+    };
+
+    /// Around both.
+    #[must_use]
+    pub fn union(&self, other: &Self) -> Self {
+        let around = |i: usize| {
+            let ([a, b], [c, d]) = (self.slopes[i], other.slopes[i]);
+            [a.min(c), b.max(d)]
+        };
+        Self {
+            slopes: [around(0), around(1)],
+            end: self.end.max(other.end),
+        }
+    }
+}
+
 /// Sixteen lines of a beam.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(align(64))]
@@ -111,10 +146,8 @@ pub struct Group {
     pub slopes: [[f32; GROUP]; 2],
     /// Up to which depth each line counts.
     pub ends: [f32; GROUP],
-    /// The smallest and largest `a`, then `b`.
-    pub bounds: [[f32; 2]; 2],
-    /// The largest of the ends.
-    pub end: f32,
+    /// Of the lines that count.
+    pub bounds: Bounds,
 }
 
 impl Group {
@@ -122,8 +155,7 @@ impl Group {
     pub const NONE: Self = Self {
         slopes: [[0.0; GROUP]; 2],
         ends: [f32::NEG_INFINITY; GROUP],
-        bounds: [[0.0; 2]; 2],
-        end: f32::NEG_INFINITY,
+        bounds: Bounds::NONE,
     };
 
     /// After ends have changed.
@@ -133,7 +165,7 @@ impl Group {
         for &e in &self.ends {
             end = if e > end { e } else { end };
         }
-        self.end = end;
+        self.bounds.end = end;
     }
 }
 
@@ -168,12 +200,12 @@ pub struct RayCandidates {
 
 /// Tests of beams.
 pub trait BeamTest: Copy {
-    /// Bit `i` is set where a line of the group may meet box `i` before its end; `entries[i]` is the
-    /// least depth of the box.
+    /// Bit `i` is set where a line within the bounds may meet box `i` before their end; `entries[i]` is
+    /// the least depth of the box.
     fn test_boxes(
         self,
         beam: &BeamFrame,
-        group: &Group,
+        bounds: &Bounds,
         boxes: &Boxes8,
         entries: &mut [f32; 8],
     ) -> u32;
@@ -206,274 +238,21 @@ pub trait BeamTest: Copy {
     );
 }
 
-/// Positive or zero where something between two sides, and between two depths, may have a point with
-/// `least z <= x <= most z`.
-#[inline(always)]
-fn overlap<L: Lane>(
-    token: L::Token,
-    [low, high]: [L; 2],
-    [first, last]: [L; 2],
-    [least, most]: [f32; 2],
-) -> L {
-    // The largest `x - least z` and the largest `most z - x`.
-    let above = high - L::all(token, least) * if least < 0.0 { last } else { first };
-    let below = L::all(token, most) * if most < 0.0 { first } else { last } - low;
-    above.min(below)
-}
-
-/// Which way a box lies: the overlap across, and its depths.
-#[inline(always)]
-fn box_verdict<L: Lane>(
-    token: L::Token,
-    beam: &BeamFrame,
-    group: &Group,
-    boxes: &Boxes8,
-    lane: usize,
-) -> [L; 3] {
-    let [x, y, z] = beam.axes;
-    let planes = &boxes.planes;
-    let (x0, y0) = (L::all(token, beam.origin[0]), L::all(token, beam.origin[1]));
-    let z0 = L::all(token, beam.origin[2]);
-    let (z_low, z_high) = (
-        L::load(token, &planes[z][lane..]),
-        L::load(token, &planes[z + 3][lane..]),
-    );
-    let depths = if beam.down {
-        [z0 - z_high, z0 - z_low]
-    } else {
-        [z_low - z0, z_high - z0]
-    };
-    let x_sides = [
-        L::load(token, &planes[x][lane..]) - x0,
-        L::load(token, &planes[x + 3][lane..]) - x0,
-    ];
-    let y_sides = [
-        L::load(token, &planes[y][lane..]) - y0,
-        L::load(token, &planes[y + 3][lane..]) - y0,
-    ];
-    let across = overlap(token, x_sides, depths, group.bounds[0]);
-    let across = across.min(overlap(token, y_sides, depths, group.bounds[1]));
-    [across, depths[0], depths[1]]
-}
-
-/// A box relative to a beam's point: the sides across, and the depths, least first.
-struct BoxSides {
-    across: [[f32; 2]; 2],
-    depths: [f32; 2],
-}
-
-impl BoxSides {
-    #[inline(always)]
-    fn new(beam: &BeamFrame, boxes: &Boxes8, lane: usize) -> Self {
-        let [x, y, z] = beam.axes;
-        let [x0, y0, z0] = beam.origin;
-        let planes = &boxes.planes;
-        let (low, high) = (planes[z][lane], planes[z + 3][lane]);
-        Self {
-            across: [
-                [planes[x][lane] - x0, planes[x + 3][lane] - x0],
-                [planes[y][lane] - y0, planes[y + 3][lane] - y0],
-            ],
-            depths: if beam.down {
-                [z0 - high, z0 - low]
-            } else {
-                [low - z0, high - z0]
-            },
-        }
-    }
-}
-
-/// Positive or zero where lines may pass between two sides at some of the depths.
-#[inline(always)]
-fn passes<L: Lane>(
-    token: L::Token,
-    slopes: &[f32],
-    [low, high]: [f32; 2],
-    [first, last]: [f32; 2],
-) -> L {
-    let slope = L::load(token, slopes);
-    let (p, q) = (slope * L::all(token, first), slope * L::all(token, last));
-    let above = L::all(token, high) - p.min(q);
-    let below = p.max(q) - L::all(token, low);
-    above.min(below)
-}
-
-/// Fills the lanes of prepared triangles from one on.
-#[inline(always)]
-fn prepare<L: Lane>(
-    token: L::Token,
-    beam: &BeamFrame,
-    rows: &[f32],
-    count: usize,
-    lane: usize,
-    out: &mut BeamTriangles,
-) {
-    let mut c = [[L::all(token, 0.0); 3]; 3];
-    let mut v = c;
-    for corner in 0..3 {
-        for i in 0..3 {
-            let start = (3 * beam.axes[i] + corner) * count + lane;
-            let x = L::load(token, &rows[start..]);
-            let origin = L::all(token, beam.origin[i]);
-            if i == 2 && beam.down {
-                v[corner][i] = L::all(token, 0.0) - x;
-                c[corner][i] = origin - x;
-            } else {
-                v[corner][i] = x;
-                c[corner][i] = x - origin;
-            }
-            c[corner][i].store(&mut out.corners[corner][i][lane..]);
-        }
-    }
-    let mut size = L::all(token, 0.0);
-    for corner in 0..3 {
-        let (from, to) = ((corner + 1) % 3, (corner + 2) % 3);
-        let e = [
-            v[to][0] - v[from][0],
-            v[to][1] - v[from][1],
-            v[to][2] - v[from][2],
-        ];
-        let a = c[from];
-        size = size.max(e[0].abs()).max(e[1].abs()).max(e[2].abs());
-        for i in 0..3 {
-            let (j, k) = ((i + 1) % 3, (i + 2) % 3);
-            (a[j] * e[k] - a[k] * e[j]).store(&mut out.normals[corner][i][lane..]);
-        }
-    }
-    let error = L::all(token, beam.error);
-    size.store(&mut out.size[lane..]);
-    (c[0][2].min(c[1][2]).min(c[2][2]) - error).store(&mut out.first[lane..]);
-    (c[0][2].max(c[1][2]).max(c[2][2]) + error).store(&mut out.last[lane..]);
-}
-
-/// How far triangles reach into a group on one axis across, and the largest `|x - a z|`.
-#[inline(always)]
-fn reach<L: Lane>(
-    token: L::Token,
-    triangles: &BeamTriangles,
-    axis: usize,
-    [least, most]: [f32; 2],
-    lane: usize,
-) -> [L; 2] {
-    let (least, most) = (L::all(token, least), L::all(token, most));
-    let [a, b, c] = &triangles.corners;
-    let (az, bz, cz) = (
-        L::load(token, &a[2][lane..]),
-        L::load(token, &b[2][lane..]),
-        L::load(token, &c[2][lane..]),
-    );
-    let (ax, bx, cx) = (
-        L::load(token, &a[axis][lane..]),
-        L::load(token, &b[axis][lane..]),
-        L::load(token, &c[axis][lane..]),
-    );
-    let (ap, bp, cp) = (ax - least * az, bx - least * bz, cx - least * cz);
-    let (aq, bq, cq) = (most * az - ax, most * bz - bx, most * cz - cx);
-    let inside = ap.max(bp).max(cp).min(aq.max(bq).max(cq));
-    let sheared = ap.abs().max(bp.abs()).max(cp.abs());
-    let sheared = sheared.max(aq.abs().max(bq.abs()).max(cq.abs()));
-    [inside, sheared]
-}
-
-/// The overlap of triangles with a group, and the error of their edge functions.
-#[inline(always)]
-fn cull<L: Lane>(
-    token: L::Token,
-    beam: &BeamFrame,
-    group: &Group,
-    triangles: &BeamTriangles,
-    lane: usize,
-) -> [L; 2] {
-    let [inside_x, sheared_x] = reach::<L>(token, triangles, 0, group.bounds[0], lane);
-    let [inside_y, sheared_y] = reach::<L>(token, triangles, 1, group.bounds[1], lane);
-    let sheared = sheared_x.max(sheared_y);
-    let p = L::all(token, beam.error);
-    let size = L::load(token, &triangles.size[lane..]);
-    let error = p * (L::all(token, 4.5) * sheared + L::all(token, 4.0) * p)
-        + L::all(token, beam.edge_error) * size;
-    [inside_x.min(inside_y), error]
-}
-
-/// Everything that decides about a line and a triangle.
-struct Edges<L> {
-    values: [L; 3],
-    least: L,
-    greatest: L,
-}
-
-impl<L: Lane> Edges<L> {
-    #[inline(always)]
-    fn new(
-        token: L::Token,
-        group: &Group,
-        triangles: &BeamTriangles,
-        triangle: usize,
-        line: usize,
-    ) -> Self {
-        let a = L::load(token, &group.slopes[0][line..]);
-        let b = L::load(token, &group.slopes[1][line..]);
-        let mut values = [a; 3];
-        for i in 0..3 {
-            let normal = &triangles.normals[i];
-            let n0 = L::all(token, normal[0][triangle]);
-            let n1 = L::all(token, normal[1][triangle]);
-            let n2 = L::all(token, normal[2][triangle]);
-            values[i] = n0 * a + n1 * b + n2;
-        }
-        Self {
-            values,
-            least: values[0].min(values[1]).min(values[2]),
-            greatest: values[0].max(values[1]).max(values[2]),
-        }
-    }
-
-    /// Bounds of the depth of a crossing.
-    #[inline(always)]
-    fn depths(
-        &self,
-        token: L::Token,
-        beam: &BeamFrame,
-        triangles: &BeamTriangles,
-        triangle: usize,
-        error: f32,
-    ) -> [L; 2] {
-        let (first, last) = (triangles.first[triangle], triangles.last[triangle]);
-        let range = last - first;
-        let [a, b, c] = &triangles.corners;
-        let [u, v, w] = self.values;
-        let sum = u + v + w;
-        let numerator = u * L::all(token, a[2][triangle] - first)
-            + v * L::all(token, b[2][triangle] - first)
-            + w * L::all(token, c[2][triangle] - first);
-        // Tiny sums make the margin larger than any range.
-        let size = sum.abs().max(L::all(token, 1e-37));
-        let share = L::all(token, 1.0) / size;
-        let depth = L::all(token, first) + numerator * (sum * share) * share;
-        let margin = L::all(token, range)
-            * (L::all(token, 5.0 * error) * share + L::all(token, 32.0 * U))
-            + L::all(token, 3.0 * beam.error);
-        [
-            (depth - margin).max(L::all(token, first)),
-            (depth + margin).min(L::all(token, last)),
-        ]
-    }
-}
-
 impl BeamTest for Scalar {
     #[inline]
     fn test_boxes(
         self,
         beam: &BeamFrame,
-        group: &Group,
+        bounds: &Bounds,
         boxes: &Boxes8,
         entries: &mut [f32; 8],
     ) -> u32 {
         let margin = 2.0 * beam.error;
         let mut mask = 0;
         for (lane, entry) in entries.iter_mut().enumerate() {
-            let [across, first, last] = box_verdict::<f32>((), beam, group, boxes, lane);
+            let [across, first, last] = box_verdict::<f32>((), beam, bounds, boxes, lane);
             *entry = first - margin;
-            let met = across >= -margin && *entry <= group.end && last >= -margin;
+            let met = across >= -margin && *entry <= bounds.end && last >= -margin;
             mask |= u32::from(met) << lane;
         }
         mask
@@ -516,7 +295,7 @@ impl BeamTest for Scalar {
             let [across, error] = cull::<f32>((), beam, group, triangles, lane);
             *out = error;
             let met = across >= -margin
-                && triangles.first[lane] <= group.end
+                && triangles.first[lane] <= group.bounds.end
                 && triangles.last[lane] >= -margin;
             mask |= u32::from(met) << lane;
         }
@@ -556,17 +335,17 @@ impl<S: Simd> BeamTest for Vector<S> {
     fn test_boxes(
         self,
         beam: &BeamFrame,
-        group: &Group,
+        bounds: &Bounds,
         boxes: &Boxes8,
         entries: &mut [f32; 8],
     ) -> u32 {
         let simd = self.0;
         let splat = f32x8::splat(simd, 2.0 * beam.error);
-        let [across, first, last] = box_verdict::<f32x8<S>>(simd, beam, group, boxes, 0);
+        let [across, first, last] = box_verdict::<f32x8<S>>(simd, beam, bounds, boxes, 0);
         let entry = first - splat;
         entry.store_slice(entries);
         let met = across.simd_ge(-splat)
-            & entry.simd_le(f32x8::splat(simd, group.end))
+            & entry.simd_le(f32x8::splat(simd, bounds.end))
             & last.simd_ge(-splat);
         met.to_bitmask() as u32
     }
@@ -607,7 +386,7 @@ impl<S: Simd> BeamTest for Vector<S> {
         let first = f32x8::from_slice(simd, &triangles.first);
         let last = f32x8::from_slice(simd, &triangles.last);
         let met = across.simd_ge(margin)
-            & first.simd_le(f32x8::splat(simd, group.end))
+            & first.simd_le(f32x8::splat(simd, group.bounds.end))
             & last.simd_ge(margin);
         met.to_bitmask() as u32
     }

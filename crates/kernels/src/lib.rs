@@ -9,7 +9,7 @@ mod lane;
 pub mod slab;
 pub mod triangles;
 
-pub use beam::{BeamFrame, BeamTest, BeamTriangles, Group, RayCandidates};
+pub use beam::{BeamFrame, BeamTest, BeamTriangles, Bounds, Group, RayCandidates};
 pub use fearless_simd::{Level, Simd, dispatch};
 pub use slab::{BoxTest, Boxes8, Scalar, SlabRay, Vector};
 pub use triangles::{Candidates, TriangleLine, TriangleTest};

@@ -5,8 +5,9 @@
 //! largest component of `d` in `[1, 2)`, and boxes in `f32`. A box *must* be reported if some
 //! `s` in `[s_min, s_max]` has `p + s d` inside the box grown by `slack` on every side.
 //!
-//! 1. *Origin.* Per axis, `near` planes are measured from `p + slack` (for `d >= 0`), rounded up
-//!    to `f32`, and `far` planes from `p - slack`, rounded down; the other way round for `d < 0`.
+//! 1. *Origin.* Per axis, `near` planes are measured from `p + slack` (for `d >= 0`) and `far` planes
+//!    from `p - slack`, the other way round for `d < 0`; both are moved outwards by `2u |p|` before they
+//!    become `f32`, which rounds by less.
 //!    With these origins and exact arithmetic the entry can only be too early, the exit too late.
 //!    The origins are floats now: from here on they are exact data.
 //! 2. *Arithmetic.* A plane's parameter is `(plane - origin) * inverse`: a difference, a product,
@@ -111,8 +112,8 @@ impl SlabRay {
         };
         for axis in 0..3 {
             let (o, d) = (origin[axis], direction[axis]);
-            // Two ulps beyond: the conversion rounds by half of one, either way.
-            let outwards = slack + o.abs() * (4.0 * f64::from(f32::EPSILON / 4.0));
+            // More than the conversion rounds by; where `o` is small that is far less than the slack.
+            let outwards = slack + o.abs() * f64::from(f32::EPSILON);
             let (above, below) = ((o + outwards) as f32, (o - outwards) as f32);
             let inverse = (1.0 / d.abs()).min(STEEPEST) as f32;
             if d < 0.0 {

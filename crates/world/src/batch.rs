@@ -100,7 +100,7 @@ impl Batch<'_> {
     /// # Errors
     /// See [`BatchError`].
     pub fn closest(&self, rays: &[RayRow]) -> Result<Vec<Hit>, BatchError> {
-        if self.world.has_beams() {
+        if self.world.has_beams() || self.world.has_triangle_slices() {
             return self.in_beams(rays, f64::INFINITY, Hit::MISS, |queries, hits| {
                 self.world.closest(queries, hits, &mut Counters::default());
             });
@@ -139,7 +139,7 @@ impl Batch<'_> {
     /// # Errors
     /// See [`BatchError`].
     pub fn meets_any(&self, rays: &[RayRow], t_max: f64) -> Result<Vec<bool>, BatchError> {
-        if self.world.has_beams() {
+        if self.world.has_beams() || self.world.has_triangle_slices() {
             return self.in_beams(rays, t_max, false, |queries, blocked| {
                 let account = Account::Sum(&mut Counters::default());
                 self.world

@@ -20,6 +20,7 @@ mod slice;
 mod solids;
 mod start;
 mod surfaces;
+mod triangle_slice;
 mod world;
 
 pub use batch::{Batch, BatchError, Lists, RayRow, row_query};

@@ -4,8 +4,8 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use octray_geometry::mesh::{
-    NearestTriangle, Placement, SearchCost, SearchMemory, TrianglePoint, TriangleQuery,
-    TriangleSearch, TriangleTree,
+    NearestTriangle, Placement, SearchCost, SearchMemory, TriangleHit, TrianglePoint,
+    TriangleQuery, TriangleSearch, TriangleTree,
 };
 use octray_geometry::{FaceId, MaterialId, SceneFrame, Sheet, TriangleMesh};
 use octray_math::{DVec3, Interval};
@@ -171,6 +171,15 @@ impl Sheets {
         }
     }
 
+    /// A crossing, as a face.
+    pub(crate) const fn crossing(&self, triangle: u32, hit: &TriangleHit) -> SheetHit {
+        SheetHit {
+            s: hit.t,
+            face: FaceId(self.first_face + triangle),
+            entering: hit.entering,
+        }
+    }
+
     /// The nearest triangle on a line, before `limit` or at it.
     pub(crate) fn nearest(
         &self,
@@ -214,11 +223,7 @@ impl Sheets {
                 if hit.t <= line.origin || departed.is_some_and(left) {
                     return end;
                 }
-                visit(&SheetHit {
-                    s: hit.t,
-                    face: FaceId(self.first_face + triangle),
-                    entering: hit.entering,
-                })
+                visit(&self.crossing(triangle, hit))
             });
         counters.add_search(&cost);
     }

@@ -69,6 +69,10 @@ impl World {
                 );
                 return;
             }
+            if self.has_triangle_slices() {
+                self.closest_by_triangles(queries, scratch, &mut account, hits);
+                return;
+            }
             hits.extend(queries.iter().enumerate().map(|(index, query)| {
                 let counters = account.of(index);
                 counters.rays += 1;
@@ -119,6 +123,10 @@ impl World {
                         blocked[index] = self.line_meets_any(line, counts, scratch, counters);
                     },
                 );
+                return;
+            }
+            if self.has_triangle_slices() {
+                self.meets_by_triangles(queries, counts, scratch, &mut account, blocked);
                 return;
             }
             blocked.extend(queries.iter().enumerate().map(|(index, query)| {

@@ -13,7 +13,7 @@ use thiserror::Error;
 
 use crate::instances::Instances;
 use crate::line::{Line, Place};
-use crate::sheets::Sheets;
+use crate::sheets::{SheetHit, Sheets};
 use crate::solids::{Interface, Scratch, Solids};
 use crate::{
     CellList, CellListError, CellsOf, Counters, Departure, Hit, MarkingStats, MemoryStats, Method,
@@ -292,7 +292,32 @@ impl World {
         if !self.instances.is_empty() {
             return self.nearest_with_copies(line, own, scratch, counters);
         }
-        let found = own?;
+        self.with_regions(line, own?, scratch, counters)
+    }
+
+    /// The nearer of the nearest triangle of a sheet and the nearest boundary of a solid.
+    pub(crate) fn with_solids(
+        &self,
+        line: &Line,
+        sheet: Option<&SheetHit>,
+        scratch: &mut Scratch,
+        counters: &mut Counters,
+    ) -> Option<Interface> {
+        let limit = sheet.map_or(f64::INFINITY, |hit| hit.s);
+        // Their faces come first.
+        let solid = self.nearest_solid(line, limit, scratch, counters);
+        let found = solid.or_else(|| sheet.map(Interface::of_sheet))?;
+        self.with_regions(line, found, scratch, counters)
+    }
+
+    /// The boundary with the regions on both sides.
+    fn with_regions(
+        &self,
+        line: &Line,
+        found: Interface,
+        scratch: &mut Scratch,
+        counters: &mut Counters,
+    ) -> Option<Interface> {
         // Which space a sheet stands in matters only where light bends or fades.
         if self.has_transparency() && !self.solids.has(found.face) {
             let region = self.solids.region_at(line, found.s, scratch, counters);
@@ -313,25 +338,42 @@ impl World {
         scratch: &mut Scratch,
         counters: &mut Counters,
     ) -> Option<Interface> {
-        let mut best: Option<Interface> = None;
-        let nearer = |s: f64, face: FaceId, best: &Option<Interface>| {
-            s < line.end && best.is_none_or(|b| s < b.s || (s == b.s && face < b.face))
-        };
-        let limit_of = |best: &Option<Interface>| best.map_or(limit, |b| b.s);
-        self.solids
-            .sweep_forward(line, limit, scratch, counters, |change| {
-                if let Some(found) = change.interface()
-                    && nearer(found.s, found.face, &best)
-                {
-                    best = Some(found);
-                }
-                limit_of(&best)
-            });
+        let best = self.nearest_solid(line, limit, scratch, counters);
+        let limit = best.map_or(limit, |b| b.s);
         let sheet = self
             .sheets
-            .nearest(line, limit_of(&best), &mut scratch.triangles, counters)
-            .filter(|hit| nearer(hit.s, hit.face, &best));
+            .nearest(line, limit, &mut scratch.triangles, counters)
+            // Of equals the lower face.
+            .filter(|hit| hit.s < line.end && best.is_none_or(|b| hit.s < b.s));
         sheet.map_or(best, |hit| Some(Interface::of_sheet(&hit)))
+    }
+
+    /// The nearest boundary of a solid before `limit` or at it.
+    fn nearest_solid(
+        &self,
+        line: &Line,
+        limit: f64,
+        scratch: &mut Scratch,
+        counters: &mut Counters,
+    ) -> Option<Interface> {
+        if self.solids.face_count() == 0 {
+            return None;
+        }
+        let mut best: Option<Interface> = None;
+        self.solids
+            .sweep_forward(line, limit, scratch, counters, |change| {
+                let is_nearer = |found: &Interface| {
+                    let (s, face) = (found.s, found.face);
+                    s < line.end
+                        && s <= limit
+                        && best.is_none_or(|b| s < b.s || (s == b.s && face < b.face))
+                };
+                if let Some(found) = change.interface().filter(is_nearer) {
+                    best = Some(found);
+                }
+                best.map_or(limit, |b| b.s)
+            });
+        best
     }
 
     /// Visits all boundaries but those of copies, sheets first, in no order. `visit` returns the
@@ -351,7 +393,7 @@ impl World {
                 limit = visit(&Interface::of_sheet(hit));
                 limit
             });
-        if limit == f64::NEG_INFINITY {
+        if limit == f64::NEG_INFINITY || self.solids.face_count() == 0 {
             return;
         }
         self.solids
@@ -413,6 +455,37 @@ impl World {
             }
         });
         met || (!self.instances.is_empty() && self.line_meets_copy(line, counts, scratch, counters))
+    }
+
+    /// Whether any of the faces of solids that count lies on the half-line.
+    pub(crate) fn line_meets_solid(
+        &self,
+        line: &Line,
+        counts: &impl Fn(FaceId) -> bool,
+        scratch: &mut Scratch,
+        counters: &mut Counters,
+    ) -> bool {
+        if self.solids.face_count() == 0 {
+            return false;
+        }
+        // Where a departure says what lies behind, every change ahead counts.
+        if self.all_blocks && line.departure != Departure::NONE {
+            return self.solids.changes(line, scratch, counters);
+        }
+        let mut met = false;
+        self.solids
+            .sweep_line(line, f64::INFINITY, scratch, counters, |change| {
+                let counts = |found: &Interface| {
+                    found.s < line.end && counts(found.face) && !self.starts_on(line, found)
+                };
+                met |= change.interface().as_ref().is_some_and(counts);
+                if met {
+                    f64::NEG_INFINITY
+                } else {
+                    f64::INFINITY
+                }
+            });
+        met
     }
 
     /// Whether a face stops light.

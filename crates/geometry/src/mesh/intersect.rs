@@ -156,7 +156,7 @@ impl TriangleRay {
         }
         let (second, third) = ((first + 1) % 3, (first + 2) % 3);
         let total = weights[first] + (weights[second] + weights[third]);
-        let barycentric = weights.map(|w| w / total);
+        let barycentric = [weights[0] / total, weights[1] / total, weights[2] / total];
         let offset = barycentric[second] * (depths[second] - depths[first])
             + barycentric[third] * (depths[third] - depths[first]);
         ((depths[first] + offset) / self.depth_per_t, barycentric)
@@ -207,12 +207,13 @@ fn unanimous(signs: [i8; 3]) -> Option<bool> {
 /// The sizes of the edge functions up to a common factor, with small relative errors.
 #[inline]
 fn weights(edges: [Edge; 3], values: [f64; 3], points: [[f64; 2]; 3]) -> [f64; 3] {
-    let sizes = values.map(f64::abs);
-    let accurate = edges
-        .iter()
-        .zip(sizes)
-        .all(|(e, size)| size >= CANCELLED * (e.plus.abs() + e.minus.abs()));
-    if accurate && SAFE_AREA.contains(&sizes.into_iter().fold(0.0, f64::max)) {
+    let sizes = [values[0].abs(), values[1].abs(), values[2].abs()];
+    let products = |e: Edge| CANCELLED * (e.plus.abs() + e.minus.abs());
+    // Without branches in between.
+    let accurate = (sizes[0] >= products(edges[0]))
+        & (sizes[1] >= products(edges[1]))
+        & (sizes[2] >= products(edges[2]));
+    if accurate && SAFE_AREA.contains(&sizes[0].max(sizes[1]).max(sizes[2])) {
         return sizes;
     }
     let [a, b, c] = points;

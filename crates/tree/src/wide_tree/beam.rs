@@ -1,9 +1,9 @@
 //! Lines through one point walk the tree together.
 //!
 //! Primary rays meet in the eye, shadow rays in a lamp. A node is entered once for all lines of a
-//! beam; four groups of sixteen lines tell for themselves which of its eight boxes they may meet
-//! ([`octray_kernels::beam`] proves that none is missed). Boxes that all groups miss, or that begin
-//! behind what every line has found already, are left out. After Reshetov, Soupikov and Hurley,
+//! beam, its eight boxes tested against four planes around the beam; for a leaf every line tells for
+//! itself whether it may meet the box ([`octray_kernels::beam`] proves that none is missed). Boxes that
+//! begin behind what every line has found already are left out. After Reshetov, Soupikov and Hurley,
 //! "Multi-level ray tracing algorithm" (SIGGRAPH 2005), and Wald, Boulos and Shirley, "Ray tracing
 //! deformable scenes using dynamic bounding volume hierarchies" (2007).
 
@@ -11,8 +11,8 @@ use std::ops::Range;
 
 use octray_kernels::beam::{GROUP, STEEPEST_SLOPE};
 use octray_kernels::slab::round_up;
-use octray_kernels::{BeamFrame, Group, Kernels};
-use octray_math::{DVec3, Ray};
+use octray_kernels::{BeamFrame, Bounds, Group, Kernels};
+use octray_math::Ray;
 
 use super::{WalkCost, WideTree, link};
 
@@ -24,8 +24,6 @@ pub const BEAM: usize = GROUPS * GROUP;
 /// The common point may be this far from the tree's centre, in its coordinates: farther away the
 /// lines of a beam cannot be told apart well enough in `f32`.
 const FARTHEST: f64 = 64.0;
-/// Slopes of a beam's lines may differ by this much; wider beams meet too much in common.
-const WIDEST: f32 = 0.25;
 /// How far lines may miss the common point, as a share of the coordinates' size.
 const MISSED: f64 = 1.0 / (1u64 << 44) as f64;
 
@@ -46,19 +44,19 @@ pub struct Beam {
     frame: BeamFrame,
     /// The lines in order. What counts of them may be shortened.
     pub groups: [Group; GROUPS],
+    /// Of all lines.
+    bounds: Bounds,
     /// Depth per parameter of each line.
     rates: [f64; BEAM],
     at: [f64; BEAM],
 }
 
-/// A child of a node that is still to be seen, the depth before which nothing in it counts, and the
-/// groups that may meet it.
+/// A child of a node that is still to be seen, and the depth before which nothing in it counts.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct PendingBeam {
     entry: f32,
     node: u32,
     lane: u32,
-    groups: u32,
 }
 
 /// What looks at the items of leaves for a beam.
@@ -71,11 +69,31 @@ pub trait BeamVisitor {
     fn leaf(&mut self, kernels: impl Kernels, places: Range<usize>, lines: [u32; GROUPS]);
 }
 
+impl Default for Beam {
+    /// No lines.
+    fn default() -> Self {
+        Self {
+            frame: BeamFrame::new([0.0; 3], 0, false, 1.0, 1.0),
+            groups: [Group::NONE; GROUPS],
+            bounds: Bounds::NONE,
+            rates: [0.0; BEAM],
+            at: [0.0; BEAM],
+        }
+    }
+}
+
 impl Beam {
     /// For the kernels.
     #[must_use]
     pub const fn frame(&self) -> &BeamFrame {
         &self.frame
+    }
+
+    /// To be called after ends of groups have changed.
+    #[inline]
+    pub fn shorten(&mut self) {
+        let end = |i: usize| self.groups[i].bounds.end;
+        self.bounds.end = end(0).max(end(1)).max(end(2)).max(end(3));
     }
 
     /// A depth on the line that is not below the one at parameter `t`.
@@ -88,19 +106,36 @@ impl Beam {
 }
 
 impl WideTree {
-    /// The beam of up to [`BEAM`] lines that pass about `through`; `None` if they have no main axis in
-    /// common, pass too far from the point, or are too far apart.
-    #[must_use]
-    pub fn beam(&self, through: DVec3, lines: &[BeamLine]) -> Option<Beam> {
-        let first = lines.first()?;
-        if self.nodes.is_empty() || lines.len() > BEAM || !through.is_finite() {
+    /// Makes a beam of up to [`BEAM`] lines that pass about the point at which the first does; `false` if
+    /// there is no use in it: one is `None`, they have no main axis in common, pass too far from the
+    /// point, or their slopes differ by more than `widest`.
+    pub fn beam(
+        &self,
+        count: usize,
+        line: impl Fn(usize) -> Option<BeamLine>,
+        widest: f32,
+        beam: &mut Beam,
+    ) -> bool {
+        self.try_beam(count, line, widest, beam).is_some()
+    }
+
+    fn try_beam(
+        &self,
+        count: usize,
+        line: impl Fn(usize) -> Option<BeamLine>,
+        widest: f32,
+        beam: &mut Beam,
+    ) -> Option<()> {
+        if self.nodes.is_empty() || !(1..=BEAM).contains(&count) {
             return None;
         }
+        let first = line(0)?;
+        let through = first.ray.origin + first.ray.direction * first.at;
         let toward = |line: &BeamLine| {
             let d = line.ray.direction;
             if line.end < line.at { -d } else { d }
         };
-        let d = toward(first);
+        let d = toward(&first);
         let size = d.abs();
         let main = if size.x >= size.y && size.x >= size.z {
             0
@@ -112,16 +147,24 @@ impl WideTree {
         let down = d[main] < 0.0;
         let origin = self.frame.point(through);
         let distance = origin.abs().max_element();
-        if !(distance <= FARTHEST) {
+        // NaN is not near.
+        let is_near = distance <= FARTHEST;
+        if !is_near {
             return None;
         }
         let (x, y) = ((main + 1) % 3, (main + 2) % 3);
         let scale = self.frame.scale();
-        let mut groups = [Group::NONE; GROUPS];
-        let (mut rates, mut at) = ([0.0; BEAM], [0.0; BEAM]);
+        let Beam {
+            frame,
+            groups,
+            bounds,
+            rates,
+            at,
+        } = beam;
         let (mut missed, mut far) = (0.0_f64, 0.0_f64);
-        for (index, line) in lines.iter().enumerate() {
-            let d = toward(line);
+        for index in 0..count {
+            let line = line(index)?;
+            let d = toward(&line);
             let along = if down { -d[main] } else { d[main] };
             let share = 1.0 / along;
             let slopes = [d[x] * share, d[y] * share];
@@ -150,34 +193,26 @@ impl WideTree {
         let extent = self.frame.point(self.bounds.max).abs().max_element();
         let extent = extent.max(self.frame.point(self.bounds.min).abs().max_element());
         let slack = far * (1.0 / (1u64 << 40) as f64);
-        let frame = BeamFrame::new(origin.to_array(), main, down, extent, slack);
-        let mut whole = [[f32::INFINITY, f32::NEG_INFINITY]; 2];
+        *frame = BeamFrame::new(origin.to_array(), main, down, extent, slack);
+        *bounds = Bounds::NONE;
         for (index, group) in groups.iter_mut().enumerate() {
-            let count = lines.len().saturating_sub(index * GROUP).min(GROUP);
-            if count == 0 {
-                break;
-            }
-            for axis in 0..2 {
-                let (mut low, mut high) = (f32::INFINITY, f32::NEG_INFINITY);
+            let count = count.saturating_sub(index * GROUP).min(GROUP);
+            group.ends[count..].fill(f32::NEG_INFINITY);
+            group.bounds = Bounds::NONE;
+            for (axis, [low, high]) in group.bounds.slopes.iter_mut().enumerate() {
                 for &slope in &group.slopes[axis][..count] {
-                    low = low.min(slope);
-                    high = high.max(slope);
+                    *low = low.min(slope);
+                    *high = high.max(slope);
                 }
-                group.bounds[axis] = [low, high];
-                whole[axis] = [whole[axis][0].min(low), whole[axis][1].max(high)];
             }
             group.shorten();
+            *bounds = bounds.union(&group.bounds);
         }
-        let wide = |[low, high]: [f32; 2]| high - low > WIDEST;
-        if wide(whole[0]) || wide(whole[1]) {
+        let wide = |[low, high]: [f32; 2]| high - low > widest;
+        if wide(bounds.slopes[0]) || wide(bounds.slopes[1]) {
             return None;
         }
-        Some(Beam {
-            frame,
-            groups,
-            rates,
-            at,
-        })
+        Some(())
     }
 
     /// Walks a beam from leaf to leaf, about front to back. To be used inside `dispatch!` on
@@ -193,79 +228,57 @@ impl WideTree {
         visitor: &mut impl BeamVisitor,
     ) {
         let mut entries = [0.0f32; 8];
-        let mut active = 0;
-        for (index, group) in visitor.beam().groups.iter().enumerate() {
-            active |= u32::from(group.end >= 0.0) << index;
-        }
         let mut height = 0;
         let mut inner = 0;
-        loop {
-            if active != 0 {
-                cost.nodes += 1;
-                let beam = visitor.beam();
-                let node = &self.nodes[inner as usize];
-                let mut met = [0; GROUPS];
-                let mut any = 0;
-                while active != 0 {
-                    let index = active.trailing_zeros() as usize & (GROUPS - 1);
-                    active &= active - 1;
-                    let group = &beam.groups[index];
-                    met[index] = kernels.test_boxes(&beam.frame, group, &node.boxes, &mut entries);
-                    any |= met[index];
-                }
-                let bottom = height;
-                while any != 0 {
-                    let lane = any.trailing_zeros() as usize & 7;
-                    any &= any - 1;
-                    let mut groups = 0;
-                    for (index, mask) in met.iter().enumerate() {
-                        groups |= (mask >> lane & 1) << index;
-                    }
-                    let next = PendingBeam {
-                        entry: entries[lane],
-                        node: inner,
-                        lane: lane as u32,
-                        groups,
-                    };
-                    let mut place = height;
-                    while place > bottom && stack[place - 1].entry < next.entry {
-                        stack[place] = stack[place - 1];
-                        place -= 1;
-                    }
-                    stack[place] = next;
-                    height += 1;
-                }
-            }
-            if height == 0 {
-                return;
-            }
-            height -= 1;
-            let part = stack[height];
+        'nodes: loop {
+            cost.nodes += 1;
             let beam = visitor.beam();
-            for (index, group) in beam.groups.iter().enumerate() {
-                active |= u32::from(part.entry <= group.end) << index;
+            let node = &self.nodes[inner as usize];
+            let mut any = kernels.test_boxes(&beam.frame, &beam.bounds, &node.boxes, &mut entries);
+            let bottom = height;
+            while any != 0 {
+                let lane = any.trailing_zeros() as usize & 7;
+                any &= any - 1;
+                let next = PendingBeam {
+                    entry: entries[lane],
+                    node: inner,
+                    lane: lane as u32,
+                };
+                let mut place = height;
+                while place > bottom && stack[place - 1].entry < next.entry {
+                    stack[place] = stack[place - 1];
+                    place -= 1;
+                }
+                stack[place] = next;
+                height += 1;
             }
-            active &= part.groups;
-            if active == 0 {
-                continue;
-            }
-            let node = &self.nodes[part.node as usize];
-            let lane = part.lane as usize & 7;
-            let Some(places) = link::items(node.links[lane]) else {
-                inner = node.links[lane];
-                continue;
-            };
-            let mut lines = [0; GROUPS];
-            let mut any = 0;
-            while active != 0 {
-                let index = active.trailing_zeros() as usize & (GROUPS - 1);
-                active &= active - 1;
-                let group = &beam.groups[index];
-                lines[index] = kernels.test_box(&beam.frame, group, &node.boxes, lane);
-                any |= lines[index];
-            }
-            if any != 0 {
-                visitor.leaf(kernels, places, lines);
+            loop {
+                if height == 0 {
+                    return;
+                }
+                height -= 1;
+                let part = stack[height];
+                let beam = visitor.beam();
+                if part.entry > beam.bounds.end {
+                    continue;
+                }
+                let node = &self.nodes[part.node as usize];
+                let lane = part.lane as usize & 7;
+                let Some(places) = link::items(node.links[lane]) else {
+                    inner = node.links[lane];
+                    continue 'nodes;
+                };
+                let mut lines = [0; GROUPS];
+                let mut any = 0;
+                for (lines, group) in lines.iter_mut().zip(&beam.groups) {
+                    if part.entry <= group.bounds.end {
+                        *lines = kernels.test_box(&beam.frame, group, &node.boxes, lane);
+                        any |= *lines;
+                    }
+                }
+                if any != 0 {
+                    visitor.leaf(kernels, places, lines);
+                }
             }
         }
     }

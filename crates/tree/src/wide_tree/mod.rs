@@ -366,8 +366,13 @@ impl WideTree {
 
     /// The same tree with kernels that run as given. No answer depends on it.
     #[must_use]
-    pub fn with_lanes(mut self, lanes: Lanes) -> Self {
+    pub const fn with_lanes(mut self, lanes: Lanes) -> Self {
         self.lanes = lanes;
         self
+    }
+
+    /// Kernels run as given from now on. No answer depends on it.
+    pub const fn set_lanes(&mut self, lanes: Lanes) {
+        self.lanes = lanes;
     }
 }

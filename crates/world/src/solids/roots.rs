@@ -74,6 +74,7 @@ pub(crate) struct Scratch {
     pub(super) inside_after: Vec<bool>,
     pub(super) walk: WalkMemory,
     pub(crate) runs: Runs,
+    pub(crate) triangle_slice: crate::triangle_slice::TriangleSlice,
     /// For the triangles of sheets.
     pub(crate) triangles: SearchMemory,
     pub(super) leaf_hits: LeafHits,

@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use octray_kernels::beam::GROUP;
 use octray_kernels::{BeamTriangles, Candidates, Kernels, RayCandidates};
-use octray_tree::wide_tree::{BEAM, Beam, BeamVisitor, GROUPS};
+use octray_tree::wide_tree::{BEAM, Beam, BeamVisitor, GROUPS, PendingBeam};
 
 use super::divide::Triangles;
 use super::nearest::{NearestTriangle, TriangleQuery};
@@ -32,19 +32,19 @@ const FEW: u32 = 3;
 
 /// Tests the triangles of leaves.
 pub(super) struct BeamLeaves<'a, T> {
-    pub(super) beam: Beam,
+    pub(super) beam: &'a mut Beam,
     pub(super) items: &'a [u32],
     pub(super) packed: &'a PackedTriangles,
     pub(super) tested: u64,
     /// Those of the leaf at hand.
-    pub(super) triangles: BeamTriangles,
+    pub(super) triangles: &'a mut BeamTriangles,
     pub(super) take: T,
 }
 
 impl<T: Take> BeamVisitor for BeamLeaves<'_, T> {
     #[inline(always)]
     fn beam(&self) -> &Beam {
-        &self.beam
+        self.beam
     }
 
     #[inline(always)]
@@ -53,7 +53,7 @@ impl<T: Take> BeamVisitor for BeamLeaves<'_, T> {
         self.tested += count as u64;
         let rows = self.packed.leaf(&places);
         let items = &self.items[places];
-        let mut is_prepared = false;
+        let (mut is_prepared, mut some_shorter) = (false, false);
         for (index, lines) in lines.into_iter().enumerate() {
             if lines == 0 {
                 continue;
@@ -62,14 +62,18 @@ impl<T: Take> BeamVisitor for BeamLeaves<'_, T> {
                 self.few(kernels, rows, items, index, lines)
             } else {
                 if !is_prepared {
-                    kernels.prepare(self.beam.frame(), rows, count, &mut self.triangles);
+                    kernels.prepare(self.beam.frame(), rows, count, self.triangles);
                     is_prepared = true;
                 }
                 self.many(kernels, items, index)
             };
             if is_shorter {
                 self.beam.groups[index].shorten();
+                some_shorter = true;
             }
+        }
+        if some_shorter {
+            self.beam.shorten();
         }
     }
 }
@@ -121,7 +125,7 @@ impl<T: Take> BeamLeaves<'_, T> {
         let mut errors = [0.0; 8];
         let mut found = RayCandidates::default();
         let (frame, group) = (self.beam.frame(), &self.beam.groups[index]);
-        let mut mask = kernels.cull(frame, group, &self.triangles, &mut errors);
+        let mut mask = kernels.cull(frame, group, self.triangles, &mut errors);
         mask &= (1 << items.len()) - 1;
         let mut is_shorter = false;
         while mask != 0 {
@@ -129,7 +133,7 @@ impl<T: Take> BeamLeaves<'_, T> {
             mask &= mask - 1;
             let (frame, group) = (self.beam.frame(), &self.beam.groups[index]);
             let error = errors[lane];
-            kernels.test_rays(frame, group, &self.triangles, lane, error, &mut found);
+            kernels.test_rays(frame, group, self.triangles, lane, error, &mut found);
             while found.possible != 0 {
                 let place = found.possible.trailing_zeros() as usize & (GROUP - 1);
                 found.possible &= found.possible - 1;
@@ -148,7 +152,7 @@ impl<T: Take> BeamLeaves<'_, T> {
     /// Hands on what was found; returns whether the line's end has changed.
     #[inline(always)]
     fn shown(&mut self, index: usize, place: usize, candidate: Candidate) -> bool {
-        let end = self.take.take(&self.beam, index * GROUP + place, candidate);
+        let end = self.take.take(self.beam, index * GROUP + place, candidate);
         let known = &mut self.beam.groups[index].ends[place];
         let is_shorter = end < *known;
         if is_shorter {
@@ -161,23 +165,57 @@ impl<T: Take> BeamLeaves<'_, T> {
 /// Triangles that may wait per line.
 const WAITING: usize = 4;
 
-/// Gathers the triangles of each line; see [`super::nearest`].
-pub(super) struct BeamNearest<'a> {
-    exact: Triangles<'a>,
-    queries: &'a [TriangleQuery],
+/// What is known of the lines of a beam.
+#[derive(Clone, Debug)]
+pub(super) struct Known {
     waiting: [[Candidate; WAITING]; BEAM],
     lengths: [u8; BEAM],
     best: [Option<NearestTriangle>; BEAM],
 }
 
+/// Working memory of beams, kept from one to the next.
+#[derive(Clone, Debug)]
+pub(super) struct BeamMemory {
+    pub(super) beam: Beam,
+    pub(super) stack: Vec<PendingBeam>,
+    pub(super) triangles: BeamTriangles,
+    pub(super) known: Known,
+}
+
+impl Default for BeamMemory {
+    fn default() -> Self {
+        Self {
+            beam: Beam::default(),
+            stack: Vec::new(),
+            triangles: BeamTriangles::default(),
+            known: Known {
+                waiting: [[Candidate::default(); WAITING]; BEAM],
+                lengths: [0; BEAM],
+                best: [None; BEAM],
+            },
+        }
+    }
+}
+
+/// Gathers the triangles of each line; see [`super::nearest`].
+pub(super) struct BeamNearest<'a> {
+    exact: Triangles<'a>,
+    queries: &'a [TriangleQuery],
+    known: &'a mut Known,
+}
+
 impl<'a> BeamNearest<'a> {
-    pub(super) fn new(exact: Triangles<'a>, queries: &'a [TriangleQuery]) -> Self {
+    pub(super) fn new(
+        exact: Triangles<'a>,
+        queries: &'a [TriangleQuery],
+        known: &'a mut Known,
+    ) -> Self {
+        known.lengths.fill(0);
+        known.best.fill(None);
         Self {
             exact,
             queries,
-            waiting: [[Candidate::default(); WAITING]; BEAM],
-            lengths: [0; BEAM],
-            best: [None; BEAM],
+            known,
         }
     }
 
@@ -185,20 +223,20 @@ impl<'a> BeamNearest<'a> {
     #[inline]
     pub(super) fn finish(&mut self, beam: &Beam, line: usize) -> Option<NearestTriangle> {
         self.decide(beam, line);
-        self.best[line]
+        self.known.best[line]
     }
 
     /// Tests what waits and has not been overtaken; returns the new end, infinity if it is as before.
     #[inline]
     fn decide(&mut self, beam: &Beam, line: usize) -> f32 {
-        let length = self.lengths[line] as usize;
+        let length = self.known.lengths[line] as usize;
         if length == 0 {
             return f32::INFINITY;
         }
         let query = &self.queries[line];
         let test = TriangleRay::new(&query.ray);
         let end = beam.groups[line / GROUP].ends[line % GROUP];
-        for candidate in &self.waiting[line][..length] {
+        for candidate in &self.known.waiting[line][..length] {
             if candidate.nearest > end {
                 continue;
             }
@@ -212,14 +250,14 @@ impl<'a> BeamNearest<'a> {
                 entering: hit.entering,
             };
             if query.counts(hit.t)
-                && found.is_before(self.best[line].as_ref())
+                && found.is_before(self.known.best[line].as_ref())
                 && !query.leaves(candidate.triangle, &self.exact)
             {
-                self.best[line] = Some(found);
+                self.known.best[line] = Some(found);
             }
         }
-        self.lengths[line] = 0;
-        self.best[line].map_or(f32::INFINITY, |best| beam.depth(line, best.t))
+        self.known.lengths[line] = 0;
+        self.known.best[line].map_or(f32::INFINITY, |best| beam.depth(line, best.t))
     }
 }
 
@@ -231,10 +269,10 @@ impl Take for BeamNearest<'_> {
             return f32::INFINITY;
         }
         let mut end = f32::INFINITY;
-        if self.lengths[line] as usize == WAITING {
+        if self.known.lengths[line] as usize == WAITING {
             // Most have been overtaken.
             let known = beam.groups[line / GROUP].ends[line % GROUP];
-            let waiting = &mut self.waiting[line];
+            let waiting = &mut self.known.waiting[line];
             let mut kept = 0;
             for i in 0..WAITING {
                 if waiting[i].nearest <= known {
@@ -242,13 +280,13 @@ impl Take for BeamNearest<'_> {
                     kept += 1;
                 }
             }
-            self.lengths[line] = kept as u8;
+            self.known.lengths[line] = kept as u8;
             if kept == WAITING {
                 end = self.decide(beam, line);
             }
         }
-        let length = &mut self.lengths[line];
-        self.waiting[line][*length as usize & (WAITING - 1)] = candidate;
+        let length = &mut self.known.lengths[line];
+        self.known.waiting[line][*length as usize & (WAITING - 1)] = candidate;
         *length += 1;
         if candidate.is_certain && candidate.nearest > beam.frame().error() {
             if query.departed.is_none() {

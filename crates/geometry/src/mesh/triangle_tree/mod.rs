@@ -13,6 +13,7 @@ mod wide;
 
 use std::ops::{ControlFlow, Range};
 
+use octray_kernels::Lanes;
 use octray_math::{Aabb, DVec3, Interval, Ray};
 use octray_tree::traversal::Steps;
 use octray_tree::{Partition, WideTreeError, WideTreeStats};
@@ -97,6 +98,16 @@ impl TriangleTree {
             .map_or(Index::All, |cells| Index::Cells(Box::new(cells))),
         };
         Ok(all)
+    }
+
+    /// The same with the kernels of the wide octree, if there is one, run as given. No answer depends on
+    /// it.
+    #[must_use]
+    pub fn with_lanes(mut self, lanes: Lanes) -> Self {
+        if let Index::Wide(wide) = &mut self.index {
+            wide.set_lanes(lanes);
+        }
+        self
     }
 
     /// How many triangles there are.
@@ -206,6 +217,13 @@ impl TriangleTree {
             })),
             Index::Cells(cells) => Box::new(cells.words()),
         }
+    }
+
+    /// Whether [`TriangleTree::nearest`] and [`TriangleTree::any_of`] are faster for many lines than for
+    /// each by itself.
+    #[must_use]
+    pub fn has_slices(&self) -> bool {
+        matches!(&self.index, Index::Wide(_)) && !self.is_empty()
     }
 
     /// Whether neighbouring rays travel together: then [`TriangleTree::enter`] is worth its call.

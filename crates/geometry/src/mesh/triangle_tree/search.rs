@@ -1,11 +1,11 @@
 //! How triangles are searched, what that needs and what it costs.
 
 use octray_tree::traversal::Steps;
-use octray_tree::wide_tree::PendingBeam;
 use octray_tree::{
     Criteria, Division, LvsiTable, Pending, WalkCost, WalkMemory, WideTree, WideTreeConfig,
 };
 
+use super::beam::BeamMemory;
 use crate::Membership;
 
 /// How the triangles that a line crosses are found. The answers are the same bits.
@@ -60,7 +60,8 @@ pub struct SearchMemory {
     pub(super) walk: WalkMemory,
     pub(super) mailbox: Mailbox,
     stack: Vec<Pending>,
-    beam_stack: Vec<PendingBeam>,
+    /// Taken out while a beam is searched.
+    pub(super) beams: Option<Box<BeamMemory>>,
 }
 
 impl SearchMemory {
@@ -76,16 +77,6 @@ impl SearchMemory {
             self.stack.resize(tree.stack_length(), Pending::default());
         }
         &mut self.stack
-    }
-
-    /// A stack for beams through this tree.
-    #[inline]
-    pub(super) fn beam_stack(&mut self, tree: &WideTree) -> &mut [PendingBeam] {
-        if self.beam_stack.len() < tree.stack_length() {
-            let length = tree.stack_length();
-            self.beam_stack.resize(length, PendingBeam::default());
-        }
-        &mut self.beam_stack
     }
 }
 

@@ -6,10 +6,10 @@ use octray_kernels::{
     BeamTriangles, Candidates, Kernels, Lanes, Scalar, TriangleLine, Vector, dispatch,
 };
 use octray_math::{Interval, Ray};
-use octray_tree::wide_tree::{BEAM, Beam, BeamLine};
+use octray_tree::wide_tree::{BEAM, Beam, BeamLine, PendingBeam};
 use octray_tree::{LeafVisitor, LocalLine, WideTree, WideTreeConfig, WideTreeError};
 
-use super::beam::{BeamAny, BeamLeaves, BeamNearest, Take};
+use super::beam::{BeamAny, BeamLeaves, BeamMemory, BeamNearest, Take};
 use super::divide::Triangles;
 use super::nearest::{Nearest, NearestTriangle, TriangleQuery};
 use super::packed::PackedTriangles;
@@ -25,6 +25,11 @@ pub(super) struct WideTriangles {
 
 /// Lines for which a beam is worth making.
 const FEWEST: usize = 8;
+
+/// Slopes of a beam's lines may differ by this much; wider beams meet too much in common. Most rays
+/// to a lamp meet nothing, so that theirs have no end to spare them what lies behind.
+const WIDEST: f32 = 0.25;
+const WIDEST_TO_LAMP: f32 = 0.06;
 
 /// Where the lines of a beam meet.
 #[derive(Clone, Copy)]
@@ -141,6 +146,10 @@ impl WideTriangles {
         Ok(Self { tree, packed })
     }
 
+    pub(super) fn set_lanes(&mut self, lanes: Lanes) {
+        self.tree.set_lanes(lanes);
+    }
+
     /// Bytes of the triangles beside the tree.
     pub(super) fn packed_bytes(&self) -> u64 {
         self.packed.bytes()
@@ -208,13 +217,21 @@ impl WideTriangles {
         memory: &mut SearchMemory,
         mut answer: impl FnMut(usize, Option<NearestTriangle>, SearchCost),
     ) {
+        let mut beams = memory.beams.take().unwrap_or_default();
         let mut first = 0;
         for part in queries.chunks(BEAM) {
-            if let Some(beam) = self.beam(part, Meeting::Start) {
-                let mut visitor = self.beam_leaves(beam, BeamNearest::new(exact, part));
-                let cost = self.walk_beam(kernels, memory, &mut visitor);
+            if self.beam(part, Meeting::Start, &mut beams.beam) {
+                let BeamMemory {
+                    beam,
+                    stack,
+                    triangles,
+                    known,
+                } = &mut *beams;
+                let take = BeamNearest::new(exact, part, known);
+                let mut visitor = self.beam_leaves(beam, triangles, take);
+                let cost = self.walk_beam(kernels, stack, &mut visitor);
                 for index in 0..part.len() {
-                    let found = visitor.take.finish(&visitor.beam, index);
+                    let found = visitor.take.finish(visitor.beam, index);
                     answer(first + index, found, cost.share(index, part.len()));
                 }
             } else {
@@ -226,6 +243,7 @@ impl WideTriangles {
             }
             first += part.len();
         }
+        memory.beams = Some(beams);
     }
 
     /// Whether `counts` is true of any triangle on each line.
@@ -254,10 +272,16 @@ impl WideTriangles {
         mut counts: impl FnMut(usize, u32, &TriangleHit) -> bool,
         mut answer: impl FnMut(usize, bool, SearchCost),
     ) {
+        let mut beams = memory.beams.take().unwrap_or_default();
         let mut first = 0;
         for part in queries.chunks(BEAM) {
-            let beam = self.beam(part, Meeting::End);
-            if let Some(beam) = beam.or_else(|| self.beam(part, Meeting::Start)) {
+            let BeamMemory {
+                beam,
+                stack,
+                triangles,
+                ..
+            } = &mut *beams;
+            if self.beam(part, Meeting::End, beam) || self.beam(part, Meeting::Start, beam) {
                 let take = BeamAny {
                     exact,
                     queries: part,
@@ -266,8 +290,8 @@ impl WideTriangles {
                         counts(first + index, triangle, hit)
                     },
                 };
-                let mut visitor = self.beam_leaves(beam, take);
-                let cost = self.walk_beam(kernels, memory, &mut visitor);
+                let mut visitor = self.beam_leaves(beam, triangles, take);
+                let cost = self.walk_beam(kernels, stack, &mut visitor);
                 let met = visitor.take.met;
                 for (index, &met) in met.iter().enumerate().take(part.len()) {
                     answer(first + index, met, cost.share(index, part.len()));
@@ -283,38 +307,38 @@ impl WideTriangles {
             }
             first += part.len();
         }
+        memory.beams = Some(beams);
     }
 
-    /// The beam of lines that meet at one end, if there are enough of them.
-    fn beam(&self, queries: &[TriangleQuery], meeting: Meeting) -> Option<Beam> {
-        if queries.len() < FEWEST {
-            return None;
-        }
-        let line = |query: &TriangleQuery| {
-            let Interval { start, end } = query.span;
-            let (at, end) = match meeting {
-                Meeting::Start => (start, end),
-                Meeting::End => (end, start),
-            };
-            let ray = query.ray;
-            (at.is_finite() && !query.span.is_empty()).then_some(BeamLine { ray, at, end })
+    /// Makes a beam of lines that meet at one end, if there are enough of them and they are neighbours.
+    fn beam(&self, queries: &[TriangleQuery], meeting: Meeting, beam: &mut Beam) -> bool {
+        let widest = match meeting {
+            Meeting::Start => WIDEST,
+            Meeting::End => WIDEST_TO_LAMP,
         };
-        let first = line(&queries[0])?;
-        let through = first.ray.at(first.at);
-        let mut lines = [first; BEAM];
-        for (place, query) in lines.iter_mut().zip(queries) {
-            *place = line(query)?;
-        }
-        self.tree.beam(through, &lines[..queries.len()])
+        let line = |index: usize| {
+            let TriangleQuery { ray, span, .. } = queries[index];
+            let (at, end) = match meeting {
+                Meeting::Start => (span.start, span.end),
+                Meeting::End => (span.end, span.start),
+            };
+            (at.is_finite() && !span.is_empty()).then_some(BeamLine { ray, at, end })
+        };
+        queries.len() >= FEWEST && self.tree.beam(queries.len(), line, widest, beam)
     }
 
-    fn beam_leaves<T: Take>(&self, beam: Beam, take: T) -> BeamLeaves<'_, T> {
+    fn beam_leaves<'a, T: Take>(
+        &'a self,
+        beam: &'a mut Beam,
+        triangles: &'a mut BeamTriangles,
+        take: T,
+    ) -> BeamLeaves<'a, T> {
         BeamLeaves {
             beam,
             items: self.tree.items(),
             packed: &self.packed,
             tested: 0,
-            triangles: BeamTriangles::default(),
+            triangles,
             take,
         }
     }
@@ -323,11 +347,13 @@ impl WideTriangles {
     fn walk_beam<T: Take>(
         &self,
         kernels: impl Kernels,
-        memory: &mut SearchMemory,
+        stack: &mut Vec<PendingBeam>,
         visitor: &mut BeamLeaves<'_, T>,
     ) -> SearchCost {
         let mut cost = SearchCost::default();
-        let stack = memory.beam_stack(&self.tree);
+        if stack.len() < self.tree.stack_length() {
+            stack.resize(self.tree.stack_length(), PendingBeam::default());
+        }
         self.tree.walk_beam(kernels, stack, &mut cost.walk, visitor);
         cost.walk.items += visitor.tested;
         cost
