@@ -217,7 +217,16 @@ def test_criteria_are_options_of_render_and_query(octray_command: Octray, tmp_pa
         "--tree-share",
         0.9,
     )
-    options += ("--quality", "fast", "--tree-memory", 10, "--lvsi-table", "power-of-two", "--lvsi-load", 2)
+    options += (
+        "--quality",
+        "fast",
+        "--tree-memory",
+        10,
+        "--lvsi-table",
+        "power-of-two",
+        "--lvsi-load",
+        2,
+    )
     accel = ("--accel", "octree:lvsi")
     size = ("--size", "24x16")
     done = octray_command("render", "a.csg", *size, *accel, *options, "--json", "-v")

@@ -48,6 +48,9 @@ pub use walk::WalkCost;
 const MAX_DEPTH: u32 = 73;
 /// How many items a thread looks at in one go.
 const SHARE: usize = 1 << 12;
+/// So few items are not divided: finding out how is most of the work, and gains little.
+const UNDIVIDED_FAST: u32 = 4;
+const UNDIVIDED_FULL: u32 = 2;
 /// The most items a leaf may hold.
 const LARGEST_LEAF: u32 = 8;
 
@@ -244,8 +247,14 @@ impl WideTree {
                 division = Some(how);
             }
         }
+        let leaf_size = config.leaf_size.clamp(1, LARGEST_LEAF);
+        let undivided = match config.quality {
+            Quality::Fast => UNDIVIDED_FAST,
+            Quality::Full => UNDIVIDED_FULL,
+        };
         let plan = Plan {
-            leaf_size: config.leaf_size.clamp(1, LARGEST_LEAF),
+            leaf_size,
+            undivided: leaf_size.min(undivided) as usize,
             division,
             // There is a second copy of nodes and items at the end, but no references any more.
             bytes: (config.memory_limit - preparing).min(config.memory_limit / 2),
@@ -277,21 +286,27 @@ impl WideTree {
 
     /// A box around all items, and how many of them are not empty.
     fn measure<I: Items + ?Sized>(items: &I) -> Result<(Aabb, usize), WideTreeError> {
-        let unbounded = |item: &u32| !items.bounds(*item).is_bounded();
-        let indices = (0..items.count() as u32)
-            .into_par_iter()
-            .with_min_len(SHARE);
-        if let Some(item) = indices.clone().find_first(unbounded) {
-            return Err(WideTreeError::Unbounded(item as usize));
+        let nothing = || (Aabb::EMPTY, 0, None::<u32>);
+        let indices = (0..items.count() as u32).into_par_iter();
+        let (whole, met, unbounded) = indices
+            .with_min_len(SHARE)
+            .fold(nothing, |(whole, met, unbounded), item| {
+                let bounds = items.bounds(item);
+                if !bounds.is_bounded() {
+                    (whole, met, unbounded.or(Some(item)))
+                } else if bounds.is_empty() {
+                    (whole, met, unbounded)
+                } else {
+                    (whole.union(bounds), met + 1, unbounded)
+                }
+            })
+            .reduce(nothing, |(a, m, first), (b, n, second)| {
+                (a.union(b), m + n, first.or(second))
+            });
+        match unbounded {
+            Some(item) => Err(WideTreeError::Unbounded(item as usize)),
+            None => Ok((whole, met)),
         }
-        Ok(indices
-            .map(|item| items.bounds(item))
-            .filter(|bounds| !bounds.is_empty())
-            .fold(
-                || (Aabb::EMPTY, 0),
-                |(whole, count), bounds| (whole.union(bounds), count + 1),
-            )
-            .reduce(|| (Aabb::EMPTY, 0), |(a, m), (b, n)| (a.union(b), m + n)))
     }
 
     /// References to the items that are not empty; `met` is how many those are.

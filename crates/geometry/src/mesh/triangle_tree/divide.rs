@@ -28,6 +28,7 @@ struct Polygon {
 const MARGIN: f64 = 1.0 / (1u64 << 46) as f64;
 
 impl Triangles<'_> {
+    #[inline]
     fn corners(&self, triangle: u32) -> [DVec3; 3] {
         self.triangles[triangle as usize].map(|i| self.positions[i as usize])
     }
@@ -38,6 +39,7 @@ impl Items for Triangles<'_> {
         self.triangles.len()
     }
 
+    #[inline]
     fn bounds(&self, item: u32) -> Aabb {
         Aabb::from_points(self.corners(item))
     }
