@@ -1,17 +1,21 @@
 //! Eight boxes at a time: octree topology with tight bounds.
 //!
-//! The tree is generic over what it holds: it sees a box per item, and names items by their index.
-//! Boxes do the culling. Items are halved again and again, in Morton order at the planes of an
-//! octree's cells ([`Quality::Fast`]) or at the planes where rays are expected to pay least
-//! ([`Quality::Full`]); then the nodes of eight are made of the halves that cost least. Every item
-//! stands in exactly one leaf.
+//! The tree is generic over what it holds ([`Items`]): it sees boxes, and names items by their
+//! index. Boxes do the culling. Items are halved again and again, in Morton order at the planes of
+//! an octree's cells ([`Quality::Fast`]) or at the planes where rays are expected to pay least
+//! ([`Quality::Full`]); then the nodes of eight are made of the halves that cost least. With
+//! [`Quality::Full`] large items may be cut in two, so that one stands in several leaves, each time
+//! within a box around a part of it. Boxes alone (`[Aabb]`) are never cut: they stand in one leaf.
 //!
 //! Bounds are kept in `f32`, relative to the tree's centre, scaled by a power of two to `[-1, 1]`
 //! and rounded outwards. They only rule out; the visitor decides in `f64`. So a search gives the
 //! same answer as trying every item, bit for bit, if the visitor does its part: the point that it
-//! reports for an item must lie in the item's box, up to `2^-43` times the largest coordinate of a
-//! corner of the tree's bounds relative to the ray's origin. (Bounds of items whose parameters are
-//! less accurate must be inflated before the tree is built.)
+//! reports for an item must lie at a point of the item itself (for boxes, in the box), up to `2^-43`
+//! times the largest coordinate of a corner of the tree's bounds relative to the ray's origin. Every
+//! point of an item lies in the box of one of its leaves at least, so the leaf is opened. (Bounds of
+//! items whose parameters are less accurate must be inflated before the tree is built.) The reported
+//! point of a triangle is a mean of its corners with the weights reported, so it is such a point
+//! however thin the triangle and however flat the line runs over it.
 
 mod build;
 mod cost;
