@@ -93,7 +93,9 @@ def test_a_peer_is_measured_and_compared_round_by_round(
         "octray, Python": "is for meshes in binary files"
     }
     found = {(entry["scene"], entry["program"]): entry for entry in report["series"]}
-    assert set(found) == {(n, p) for n in names for p in ("octray", "POV-Ray", "POV-Ray +BM2")}
+    here = {(n, p) for n in names for p in ("octray", "POV-Ray", "POV-Ray +BM2")}
+    # Of what is no mesh, the script renders the empty pictures alone.
+    assert set(found) == here | {(names[0], "octray, Python"), (names[2], "octray, Python")}
     ours, theirs = found["sphere", "octray"], found["sphere", "POV-Ray"]
     for entry in (ours, theirs):
         assert [run["round"] for run in entry["runs"]] == [0, 1]
@@ -303,6 +305,37 @@ def test_ratios_are_medians_over_rounds_and_not_ratios_of_medians() -> None:
     assert "empty" not in table
 
 
+def test_the_page_is_filled_from_results(octray_command: Octray, tmp_path: Path) -> None:
+    environment = path_with(tmp_path, povray=POVRAY.format(work=""))
+    results: list[Path] = []
+    for scene, threads in (("balls0", 1), ("drilled2", 1), ("drilled2", 2)):
+        arguments = ("-j", threads, "--repeat", 1, "--progress", "none", "--json")
+        done = octray_command("bench", scene, *arguments, env=environment)
+        assert done.returncode == 0, done.stderr
+        results.append(tmp_path / f"{len(results)}.json")
+        results[-1].write_text(done.stdout, encoding="utf-8")
+    page = tmp_path / "page.md"
+    page.write_text(PAGE.read_text(encoding="utf-8"), encoding="utf-8")
+
+    def fill() -> subprocess.CompletedProcess[str]:
+        script = ROOT / "benches" / "renders" / "tables.py"
+        command = [sys.executable, *map(str, [script, *results, "--page", page])]
+        return subprocess.run(command, capture_output=True, text=True, check=False)
+
+    done = fill()
+    assert done.returncode == 0, done.stderr
+    text = page.read_text(encoding="utf-8")
+    median = json.loads(results[0].read_text())["series"][-1]["median"]
+    assert re.search(r"^\| balls0 \| 1 \| [0-9.e-]+ \| 7\.5 \| 7\.5 \|", text, re.MULTILINE)
+    assert median["trace_s"] == 7.5
+    assert re.search(r"^\| 4 \| [0-9.]+ \| [-0-9.]+ \|", text, re.MULTILINE), "the drilled plate"
+    assert re.search(r"^\| drilled2 \| [0-9.]+ \| 1\.00 \| 1\.00 \|", text, re.MULTILINE), "threads"
+    assert fill().returncode == 0
+    assert page.read_text(encoding="utf-8") == text
+    page.write_text(text.replace("<!-- traced -->", ""), encoding="utf-8")
+    assert "0 places for traced" in fill().stderr
+
+
 @pytest.mark.parametrize(
     "command",
     [
@@ -314,7 +347,7 @@ def test_ratios_are_medians_over_rounds_and_not_ratios_of_medians() -> None:
     ],
 )
 def test_the_commands_of_the_page_are_understood(command: str) -> None:
-    arguments = shlex.split(command)[2:]
+    arguments = [word for word in shlex.split(command, comments=True)[2:] if word != "--list"]
     understood = bench_command.command.make_context("octray bench", arguments).params
     for scene in understood["scenes"]:
         catalogue.check(scene)

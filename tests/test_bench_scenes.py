@@ -16,6 +16,7 @@ import numpy.typing as npt
 import pytest
 
 import octray
+from conftest import ROOT
 from octray.bench import catalogue, shapes
 from octray.bench.writers import mitsuba, ply, pov, script, tachyon
 from octray.lab.figures import primitives_of
@@ -196,7 +197,7 @@ def test_a_mesh_in_a_binary_file_makes_the_same_picture(tmp_path: Path) -> None:
         mitsuba.write(scene, file, tmp_path)
     path = tmp_path / "mesh70k.py"
     with path.open("w", encoding="ascii") as file:
-        script.write(scene, file, tmp_path)
+        script.write(scene, file)
     small = path.read_text(encoding="ascii").replace(str(scene.size), "(48, 48)")
     path.write_text(small, encoding="ascii")
     target = tmp_path / "binary.png"
@@ -207,3 +208,20 @@ def test_a_mesh_in_a_binary_file_makes_the_same_picture(tmp_path: Path) -> None:
     assert json.loads(done.stdout)["rays"]["primary"] == 48 * 48
     image = octray.load(write(scene, tmp_path)).render(size=(48, 48))
     assert target.read_bytes() == image.to_bytes("png")
+
+
+def test_the_script_writes_the_scenes_for_every_program(tmp_path: Path) -> None:
+    command = [sys.executable, str(ROOT / "benches" / "renders" / "write_scenes.py")]
+    names = ("sphere", "csg2", "mesh70k")
+    done = subprocess.run(
+        [*command, str(tmp_path), *names], capture_output=True, text=True, check=False
+    )
+    assert done.returncode == 0, done.stderr
+    written = {path.name for path in tmp_path.iterdir()}
+    everything = {f"mesh70k{suffix}" for suffix in (".pov", ".dat", ".xml", ".py", "-0.ply")}
+    assert written == everything | {"csg2.pov", "sphere.pov", "sphere.dat", "sphere.xml"}
+    done = subprocess.run(
+        [*command, str(tmp_path), "teapot"], capture_output=True, text=True, check=False
+    )
+    assert done.returncode == 2
+    assert "there is no scene 'teapot'" in done.stderr

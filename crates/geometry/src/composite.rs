@@ -3,7 +3,7 @@
 use octray_math::{Aabb, DAffine3, DVec3};
 
 use crate::ShapeError;
-use crate::boundary::FlatBoundary;
+use crate::boundary::Boundary;
 use crate::profile::{Formula, MAX_FORMULA_DEPTH};
 use crate::surface::Canonical;
 
@@ -43,17 +43,17 @@ pub enum CompositeFace {
 /// A bounded solid given as a formula over faces: what prisms, lathes and concave polyhedra are.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Composite {
-    kind: CompositeKind,
     faces: Vec<CompositeFace>,
     formula: Formula,
     bounds: Aabb,
-    flat: Option<FlatBoundary>,
+    boundary: Boundary,
 }
 
 impl Composite {
-    /// The solid where `formula` holds, whose side `i` is `faces[i]`; all of it lies in `bounds`.
+    /// The solid where `formula` holds, whose side `i` is `faces[i]`; all of it lies in `bounds`, and its
+    /// boundary where `boundary` says.
     pub(crate) fn new(
-        kind: CompositeKind,
+        boundary: Boundary,
         faces: Vec<CompositeFace>,
         formula: Formula,
         bounds: Aabb,
@@ -65,31 +65,22 @@ impl Composite {
             return Err(ShapeError::BadProfile("is too large"));
         }
         Ok(Self {
-            kind,
             faces,
             formula,
             bounds,
-            flat: None,
+            boundary,
         })
     }
 
-    /// The same solid, knowing that its boundary consists of plane polygons.
-    pub(crate) fn with_flat_boundary(self, flat: FlatBoundary) -> Self {
-        Self {
-            flat: Some(flat),
-            ..self
-        }
-    }
-
-    /// The plane polygons of its boundary, where there are no others.
-    pub(crate) const fn flat(&self) -> Option<&FlatBoundary> {
-        self.flat.as_ref()
+    /// What its boundary is made of.
+    pub(crate) const fn boundary(&self) -> &Boundary {
+        &self.boundary
     }
 
     /// What it was made as.
     #[must_use]
     pub const fn kind(&self) -> CompositeKind {
-        self.kind
+        self.boundary.kind()
     }
 
     /// Its surfaces.

@@ -6,8 +6,8 @@
 
 use octray_math::{Aabb, DVec3};
 
-use crate::boundary::FlatBoundary;
-use crate::composite::{Composite, CompositeFace, CompositeKind};
+use crate::boundary::Boundary;
+use crate::composite::{Composite, CompositeFace};
 use crate::polygon::Triangulator;
 use crate::profile::{Formula, MAX_FORMULA_DEPTH};
 use crate::{ShapeError, TriangleMesh};
@@ -66,7 +66,7 @@ pub(crate) fn polyhedron(vertices: &[DVec3], faces: &[Vec<u32>]) -> Result<Compo
             )
         })
         .collect();
-    let flat = FlatBoundary::Triangles(triangles.into());
+    let boundary = Boundary::Triangles(triangles.into());
     let mut partition = Partition {
         planes: &planes,
         tolerance,
@@ -91,8 +91,7 @@ pub(crate) fn polyhedron(vertices: &[DVec3], faces: &[Vec<u32>]) -> Result<Compo
         .into_iter()
         .map(|(normal, point)| CompositeFace::Plane { normal, point })
         .collect();
-    let composite = Composite::new(CompositeKind::Polyhedron, faces, formula, bounds)?;
-    Ok(composite.with_flat_boundary(flat))
+    Composite::new(boundary, faces, formula, bounds)
 }
 
 /// Where the corners of a face are.

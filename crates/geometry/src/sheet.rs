@@ -15,8 +15,8 @@ pub enum Sheet {
     Mesh {
         /// The triangles in their own frame.
         mesh: Arc<TriangleMesh>,
-        /// Invertible.
-        world_from_mesh: DAffine3,
+        /// Invertible. In a box, because a sheet is rare and solids are in one `enum` with it.
+        world_from_mesh: Box<DAffine3>,
     },
     /// The part of the boundary of `solid` that lies in `clip`: discs, open cylinders and cones,
     /// POV-Ray's `clipped_by`.
@@ -34,7 +34,7 @@ impl Sheet {
     pub fn mesh(mesh: Arc<TriangleMesh>) -> Self {
         Self::Mesh {
             mesh,
-            world_from_mesh: DAffine3::IDENTITY,
+            world_from_mesh: Box::new(DAffine3::IDENTITY),
         }
     }
 
@@ -81,7 +81,7 @@ impl Sheet {
                 world_from_mesh,
             } => Self::Mesh {
                 mesh: Arc::clone(mesh),
-                world_from_mesh: parent_from_child * *world_from_mesh,
+                world_from_mesh: Box::new(parent_from_child * **world_from_mesh),
             },
             Self::Shell { solid, clip } => Self::Shell {
                 solid: solid.transform(parent_from_child)?,

@@ -82,7 +82,7 @@ impl Placed {
                 world_from_mesh,
             }) => Some(Self {
                 mesh: Arc::clone(mesh),
-                world_from_mesh: *world_from_mesh,
+                world_from_mesh: **world_from_mesh,
                 solid: false,
             }),
             ObjectShape::Solid(solid) => match solid.node() {
@@ -128,7 +128,7 @@ impl Placed {
         }
         Ok(ObjectShape::Sheet(Sheet::Mesh {
             mesh,
-            world_from_mesh: self.world_from_mesh,
+            world_from_mesh: Box::new(self.world_from_mesh),
         }))
     }
 }

@@ -29,6 +29,7 @@ fn tests<'py>(py: Python<'py>, cost: &Counters, rays: u64) -> PyResult<Bound<'py
     dict.set_item("cells", per_ray(cost.cells))?;
     dict.set_item("lookups", per_ray(cost.lookups))?;
     dict.set_item("nodes", per_ray(cost.nodes))?;
+    dict.set_item("instances", per_ray(cost.instances))?;
     Ok(dict)
 }
 

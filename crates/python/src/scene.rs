@@ -188,7 +188,7 @@ impl Scene {
     /// one for each of the affine maps in an array of shape (N, 4, 4) or (N, 3, 4), by rows. Returns
     /// the object's id; `Hits.instance_id` tells the copies apart.
     ///
-    /// What is copied must be bounded. A copy takes about 130 bytes however large what is copied is.
+    /// What is copied must be bounded. A copy takes about 140 bytes however large what is copied is.
     /// Where solids overlap, a copy counts as an object would, of the size of its box; the later copy
     /// before the earlier. `solid` fills meshes as in `add_mesh`. A ValueError says which transform
     /// is not finite, flat or not affine.

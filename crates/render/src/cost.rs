@@ -7,11 +7,11 @@ use crate::film::MAX_CONTRIBUTION;
 use crate::stats::RenderStats;
 use crate::tile::{OfPixel, TileFilm};
 
-/// The colour of a cost picture that so much work makes: red counts steps (cells entered, nodes and
-/// look-ups), green surfaces intersected, blue triangles intersected.
+/// The colour of a cost picture that so much work makes: red counts steps (cells and copies entered,
+/// nodes and look-ups), green surfaces intersected, blue triangles intersected.
 #[must_use]
 pub fn cost_channels(cost: &Counters) -> DVec3 {
-    let steps = cost.cells + cost.nodes + cost.lookups;
+    let steps = cost.cells + cost.nodes + cost.lookups + cost.instances;
     DVec3::new(
         steps as f64,
         cost.surface_tests as f64,

@@ -1,4 +1,6 @@
-use octray_geometry::{MaterialId, ShapeError, Sheet, Solid, SolidNode};
+use std::sync::Arc;
+
+use octray_geometry::{MaterialId, Primitive, ShapeError, Sheet, Solid, SolidNode, TriangleMesh};
 use octray_math::{Aabb, DVec3};
 use thiserror::Error;
 
@@ -9,7 +11,8 @@ use crate::{
 /// A complete scene. Made by [`SceneBuilder::build`], valid for good.
 #[derive(Clone, Debug)]
 pub struct Scene {
-    objects: Vec<Object>,
+    /// Shared with the scenes that this one was copied from.
+    objects: Arc<Vec<Object>>,
     materials: Vec<Material>,
     lights: Vec<Light>,
     camera: Option<Camera>,
@@ -182,7 +185,7 @@ impl SceneBuilder {
     pub fn new() -> Self {
         Self {
             scene: Scene {
-                objects: Vec::new(),
+                objects: Arc::default(),
                 materials: Vec::new(),
                 lights: Vec::new(),
                 camera: None,
@@ -202,7 +205,7 @@ impl SceneBuilder {
     /// Adds an object; its id is the number of objects before it.
     pub fn add_object(&mut self, object: Object) -> ObjectId {
         let id = ObjectId(self.scene.objects.len() as u32);
-        self.scene.objects.push(object);
+        Arc::make_mut(&mut self.scene.objects).push(object);
         id
     }
 
@@ -247,7 +250,7 @@ impl SceneBuilder {
         if scene.objects.len() > 1 << 30 {
             errors.push(SceneError::TooManyObjects(scene.objects.len()));
         }
-        for object in &scene.objects {
+        for object in scene.objects() {
             // The other checks walk the tree.
             if let Err(error) = check_size(&object.shape) {
                 let object = object.name.to_string();
@@ -317,12 +320,7 @@ fn check_materials(object: &Object, count: usize, errors: &mut Vec<SceneError>) 
 
 fn face_materials(shape: &Shape, check: &mut impl FnMut(MaterialId)) {
     match shape {
-        Shape::Sheet(Sheet::Mesh { mesh, .. }) => {
-            // The highest id is out of range if any is.
-            if let Some(&id) = mesh.materials().unwrap_or_default().iter().max() {
-                check(id);
-            }
-        }
+        Shape::Sheet(Sheet::Mesh { mesh, .. }) => mesh_materials(mesh, check),
         Shape::Sheet(Sheet::Shell { solid, .. }) | Shape::Solid(solid) => {
             solid_materials(solid, check);
         }
@@ -331,10 +329,18 @@ fn face_materials(shape: &Shape, check: &mut impl FnMut(MaterialId)) {
     }
 }
 
+fn mesh_materials(mesh: &TriangleMesh, check: &mut impl FnMut(MaterialId)) {
+    // The highest id is out of range if any is.
+    if let Some(&id) = mesh.materials().unwrap_or_default().iter().max() {
+        check(id);
+    }
+}
+
 fn solid_materials(solid: &Solid, check: &mut impl FnMut(MaterialId)) {
     let mut stack = vec![solid];
     while let Some(solid) = stack.pop() {
         match solid.node() {
+            SolidNode::Primitive(Primitive::Mesh(mesh)) => mesh_materials(mesh, check),
             SolidNode::Empty | SolidNode::Primitive(_) => {}
             SolidNode::Transformed { child, .. } | SolidNode::Complement(child) => {
                 stack.push(child);
@@ -480,6 +486,37 @@ fn check_camera(camera: &Camera, errors: &mut Vec<SceneError>) {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn materials_of_meshes_are_checked_wherever_the_mesh_is() {
+        use std::sync::Arc;
+
+        use octray_geometry::MeshRule;
+        use octray_math::DAffine3;
+
+        use crate::{Instances, Prototype};
+
+        let positions = vec![DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z];
+        let triangles = vec![[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]];
+        let mesh = TriangleMesh::new(positions, triangles).expect("valid");
+        let mesh = mesh.with_materials([0, 0, 9, 0].map(MaterialId).to_vec());
+        let mesh = Arc::new(mesh.expect("one each"));
+        let solid = Solid::mesh(Arc::clone(&mesh), MeshRule::Strict).expect("closed");
+        let cut = Solid::difference([Solid::sphere(1.0).expect("valid"), solid.clone()]);
+        let sheet = Shape::Sheet(Sheet::mesh(mesh));
+        let prototype = Prototype::new([Shape::Solid(cut.clone())]).expect("bounded");
+        let copies = Instances::new(Arc::new(prototype), [DAffine3::IDENTITY]);
+        let copies = Shape::Instances(copies.expect("invertible"));
+        for shape in [Shape::Solid(solid), Shape::Solid(cut), sheet, copies] {
+            let mut builder = SceneBuilder::new();
+            let material = builder.add_material(Material::default());
+            builder.add_object(Object::new("mesh", shape, material));
+            let errors = builder.build().expect_err("a material that is not there");
+            let unknown =
+                |e: &SceneError| matches!(e, SceneError::UnknownMaterial { material: 9, .. });
+            assert!(errors.iter().all(unknown) && !errors.is_empty());
+        }
+    }
 
     #[test]
     fn everything_wrong_is_reported_at_once() {

@@ -22,5 +22,6 @@ pub use grid::Grid;
 pub use partition::{Division, Encoding, Leaf, Partition, PartitionStats, Traversal, WalkMemory};
 pub use tally::Tally;
 pub use wide_tree::{
-    Coordinates, Items, Quality, WalkCost, WideTree, WideTreeConfig, WideTreeError, WideTreeStats,
+    Coordinates, Items, LeafVisitor, LocalLine, Pending, Quality, WalkCost, WideTree,
+    WideTreeConfig, WideTreeError, WideTreeStats,
 };

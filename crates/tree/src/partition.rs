@@ -163,13 +163,32 @@ impl Partition {
         criteria: &Criteria,
         table: LvsiTable,
     ) -> (Self, Vec<S::Content>) {
+        let mut contents = Vec::new();
+        let mut keep = |content| contents.push(content);
+        let how = (division, table);
+        let partition = Self::build_into(bounds, content, subdivide, how, criteria, &mut keep);
+        (partition, contents)
+    }
+
+    /// Like [`Partition::build`], but hands over the contents of the occupied cells one by one, in the
+    /// order of their indices; an octree does so while it is built ([`CellTree::build_into`]).
+    pub fn build_into<S: Subdivide>(
+        bounds: &Aabb,
+        content: S::Content,
+        subdivide: &S,
+        (division, table): (Division, LvsiTable),
+        criteria: &Criteria,
+        leaf: &mut impl FnMut(S::Content),
+    ) -> Self {
         match division {
             Division::Octree(encoding, traversal) => {
                 let how = (encoding, traversal, table);
-                Self::octree(bounds, content, subdivide, how, criteria)
+                Self::octree(bounds, content, subdivide, how, criteria, leaf)
             }
             Division::Grid(resolution) => {
-                Self::grid(bounds, content, subdivide, resolution, criteria)
+                let (grid, contents) = Self::grid(bounds, content, subdivide, resolution, criteria);
+                contents.into_iter().for_each(leaf);
+                grid
             }
         }
     }
@@ -180,11 +199,12 @@ impl Partition {
         subdivide: &S,
         (encoding, traversal, size): (Encoding, Traversal, LvsiTable),
         criteria: &Criteria,
-    ) -> (Self, Vec<S::Content>) {
+        leaf: &mut impl FnMut(S::Content),
+    ) -> Self {
         let mut criteria = *criteria;
         criteria.max_depth = criteria.max_depth.min(encoding.max_depth());
-        let (tree, contents) =
-            CellTree::build(enclosing_cube(bounds), content, subdivide, &criteria);
+        let cube = enclosing_cube(bounds);
+        let tree = CellTree::build_into(cube, content, subdivide, &criteria, leaf);
         let mut stats = PartitionStats {
             cells: tree.stats().clone(),
             ..PartitionStats::default()
@@ -207,12 +227,11 @@ impl Partition {
                 Cells::Lvsi(table)
             }
         };
-        let partition = Self {
+        Self {
             bounds,
             cells,
             stats,
-        };
-        (partition, contents)
+        }
     }
 
     fn grid<S: Subdivide>(

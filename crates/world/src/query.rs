@@ -40,7 +40,9 @@ pub struct Departure {
     pub face: FaceId,
     /// As [`Hit::instance`].
     pub instance: u32,
-    /// Whether the ray goes to the side that the face's outward normal points to.
+    /// Whether the ray goes to the side that the face's outward normal points to. It must agree with the
+    /// ray's direction: which crossing is removed is undefined where it does not, and may then be
+    /// another one with the same sense, farther along the ray.
     pub outward: bool,
 }
 

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use octray_geometry::Solid;
+use octray_geometry::{Sheet, Solid, TriangleMesh};
 use octray_math::{DVec3, Ray};
 use octray_scene::{Material, Object, Scene, SceneBuilder};
 use octray_world::{
@@ -256,4 +256,51 @@ fn cells_fill_the_root_and_surfaces_lie_in_occupied_ones() {
         assert_eq!(world.root(CellsOf::Solids), None);
         assert!(cells(&world).is_empty() && world.stats().cells.is_none());
     }
+}
+
+/// A hilly sheet of triangles.
+fn sheet(method: &str, criteria: Criteria) -> World {
+    let n = 24;
+    let at = |i: u32| {
+        let (x, y) = (f64::from(i % (n + 1)) / 4.0, f64::from(i / (n + 1)) / 4.0);
+        DVec3::new(1000.0 + x, y - 500.0, 30.0 + libm::sin(x) * libm::cos(y))
+    };
+    let corners = |i: u32| {
+        let low = i / n * (n + 1) + i % n;
+        [
+            [low, low + 1, low + n + 1],
+            [low + 1, low + n + 2, low + n + 1],
+        ]
+    };
+    let positions = (0..(n + 1) * (n + 1)).map(at).collect();
+    let mesh = TriangleMesh::new(positions, (0..n * n).flat_map(corners).collect());
+    let mut builder = SceneBuilder::new();
+    let grey = builder.add_material(Material::default());
+    let mesh = Sheet::mesh(Arc::new(mesh.expect("valid")));
+    builder.add_object(Object::sheet("hills", mesh, grey));
+    let config = WorldConfig {
+        method: method.parse().expect("a method"),
+        criteria,
+        ..WorldConfig::default()
+    };
+    World::prepare(Arc::new(builder.build().expect("valid")), &config).expect("a world")
+}
+
+#[test]
+fn the_share_bites_for_triangles_too() {
+    let expected = closest(&sheet("brute", OFF));
+    assert!(expected.iter().filter(|hit| !hit.is_miss()).count() > 50);
+    let leaves = [0.0, 0.1, 0.5, 1.0].map(|max_share| {
+        let world = sheet("octree", Criteria { max_share, ..OFF });
+        assert_eq!(closest(&world), expected, "{max_share}");
+        let mut leaves = 0;
+        world.visit_cells(CellsOf::Triangles, |_| leaves += 1);
+        leaves
+    });
+    // At 0 whatever has a triangle that is not parallel to a face stays whole: the root.
+    assert!(leaves[0] == 1 && leaves.is_sorted(), "{leaves:?}");
+    assert!(
+        leaves[0] < leaves[1] && leaves[1] < leaves[2] && leaves[2] < leaves[3],
+        "{leaves:?}"
+    );
 }

@@ -54,7 +54,7 @@ def measure(
         [sys.executable, "-I", "-S", str(_LAUNCHER), str(log), *command],
         cwd=folder,
         stdout=subprocess.PIPE,
-        env={**os.environ, **environment},
+        env={**os.environ, "LC_ALL": "C", **environment},  # numbers with a point
         start_new_session=True,
     )
     try:

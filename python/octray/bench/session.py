@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 
 from octray.bench import catalogue
 from octray.bench.process import RunError, measure
+from octray.bench.programs.files import SUFFIXES
 from octray.bench.result import Report, Run, SceneFacts, Series, Status
 
 if TYPE_CHECKING:
@@ -90,6 +91,8 @@ class Session:
                 facts.unfit[program.name] = objection
         for threads, program in itertools.product(self.plan.threads, fit):
             self.report.series.append(Series(scene.name, threads, program.name))
+        for suffix in SUFFIXES:  # of another version, perhaps
+            (self.plan.folder / f"{scene.name}{suffix}").unlink(missing_ok=True)
         for program in fit:
             program.write(scene, self.plan.folder)
         # Whoever runs after a heavy neighbour meets a warm machine: take turns at that, too.
@@ -115,7 +118,7 @@ class Session:
         if left <= (series.median("whole_s") or 0):
             raise RunError(Status.CUT_OFF.value, self._count(series))
         limits = [limit for limit in (self.plan.timeout, left) if limit not in {None, math.inf}]
-        command = program.command(scene, folder, threads)
+        command = program.command(scene, threads)
         try:
             cost = measure(command, folder, min(limits, default=None), program.environment(folder))
         except RunError as error:

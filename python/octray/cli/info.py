@@ -31,9 +31,11 @@ def _object_line(index: int, entry: dict[str, Any]) -> str:
         f"{count} {name}" if count > 1 else name for name, count in entry["primitives"].items()
     )
     triangles = f", {entry['triangles']} triangles" if entry["triangles"] else ""
+    copies = entry["instances"]
+    kind = entry["kind"] if copies is None else f"{copies} instances of"
     bounds = "unbounded" if entry["unbounded"] else _box(entry["bounds"])
     return (
-        f"  {index}  {entry['name']}: {entry['kind']} ({parts or 'empty'}{triangles}),"
+        f"  {index}  {entry['name']}: {kind} ({parts or 'empty'}{triangles}),"
         f" material {entry['material']}\n       bounds {bounds}"
     )
 

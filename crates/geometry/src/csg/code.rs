@@ -106,6 +106,15 @@ pub(super) struct Open {
 }
 
 impl Writer {
+    /// Writes behind what is there.
+    pub(super) const fn behind(words: Vec<u32>) -> Self {
+        Self { words }
+    }
+
+    pub(super) fn into_words(self) -> Vec<u32> {
+        self.words
+    }
+
     pub(super) fn finish(self) -> Code {
         Code { words: self.words }
     }

@@ -109,15 +109,28 @@ impl Lowering {
     /// The solid's size must have been checked ([`Solid::check_size`]): this recurses.
     pub fn lower(&mut self, solid: &Solid) -> Lowered {
         let mut writer = Writer::default();
+        match self.lower_to(solid, &mut writer) {
+            Some(constant) => Err(constant),
+            None => Ok(writer.finish()),
+        }
+    }
+
+    /// Like [`Lowering::lower`], with the words of the expression appended to others; of a constant,
+    /// none.
+    pub fn lower_into(&mut self, solid: &Solid, words: &mut Vec<u32>) -> Option<Constant> {
+        let mut writer = Writer::behind(std::mem::take(words));
+        let constant = self.lower_to(solid, &mut writer);
+        *words = writer.into_words();
+        constant
+    }
+
+    fn lower_to(&mut self, solid: &Solid, writer: &mut Writer) -> Option<Constant> {
         let context = Context {
             scene_from_here: self.scene_from_world,
             complemented: false,
             material: None,
         };
-        match self.visit(solid, &context, &mut writer) {
-            Some(constant) => Err(constant),
-            None => Ok(writer.finish()),
-        }
+        self.visit(solid, &context, writer)
     }
 
     /// All of it.
@@ -126,6 +139,7 @@ impl Lowering {
         let tolerance = self.table.tolerance() * self.scene_size;
         let surfaces = self.table.into_surfaces();
         let mut faces = self.faces;
+        faces.shrink_to_fit();
         for face in &mut faces {
             let from_last = FIRST_MESH - face.surface.0;
             if (from_last as usize) < self.meshes.len() {

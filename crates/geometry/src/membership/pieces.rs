@@ -23,18 +23,16 @@ pub struct Fineness {
 /// Shells are this share of their operand's size apart, and boxes of a cover that long.
 ///
 /// Measured on one primitive of every kind, all cells divided to depth 6, where the analytic test marks
-/// 51,066 pairs of a cell and an operand:
+/// 29,490 pairs of a cell and an operand:
 ///
 /// | shells | marks | MB | | cover | marks | MB |
 /// |---|---:|---:|---|---|---:|---:|
-/// | 1/32 | 71,555 | 29 | | 1/4 | 219,294 | 2 |
-/// | 1/64 | 70,489 | 45 | | 1/8 | 132,344 | 7 |
-/// | 1/128 | 70,273 | 46 | | 1/16 | 102,165 | 14 |
-/// | 1/256 | 70,183 | 49 | | 1/32 | 87,930 | 27 |
-///
-/// (Four times as many pieces for an operand take the shells at 1/64 to 60,378 marks and 100 MB.)
-const CHORD_SHARE: f64 = 1.0 / 64.0;
-const COVER_SHARE: f64 = 1.0 / 16.0;
+/// | 1/32 | 38,479 | 1.7 | | 1/4 | 271,193 | 0.1 |
+/// | 1/64 | 33,806 | 2.6 | | 1/8 | 151,317 | 0.6 |
+/// | 1/128 | 29,514 | 3.0 | | 1/16 | 90,360 | 1.2 |
+/// | 1/256 | 29,295 | 3.7 | | 1/32 | 58,028 | 3.0 |
+const CHORD_SHARE: f64 = 1.0 / 128.0;
+const COVER_SHARE: f64 = 1.0 / 32.0;
 /// Nothing is followed below this share of what is divided.
 const LEAST_SHARE: f64 = 1.0 / 16384.0;
 /// An operand has no more pieces than this, so that one of many parts cannot take all memory.

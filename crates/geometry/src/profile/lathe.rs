@@ -8,7 +8,8 @@ use super::formula::Formula;
 use super::pieces::Piece;
 use super::region::Region;
 use crate::ShapeError;
-use crate::composite::{Composite, CompositeFace, CompositeKind};
+use crate::boundary::Boundary;
+use crate::composite::{Composite, CompositeFace};
 use crate::surface::Canonical;
 
 /// A torus whose tube is thicker than this many major radii is handled as a turned arc: in its own
@@ -39,12 +40,12 @@ impl Turning {
         steps: None,
     };
 
-    fn is_whole(&self) -> bool {
+    pub(crate) fn is_whole(&self) -> bool {
         self.sweep >= 360.0
     }
 
     /// The direction, as a unit vector, after this part of the whole turn.
-    fn direction(&self, part: f64) -> DVec2 {
+    pub(crate) fn direction(&self, part: f64) -> DVec2 {
         let (sin, cos) = transform::sin_cos_degrees(self.start + self.sweep * part);
         DVec2::new(cos, sin)
     }
@@ -146,8 +147,9 @@ pub(crate) fn lathe(region: &Region, turning: Turning) -> Result<Composite, Shap
         });
     }
     let around = turning.bounds(low.x, high.x);
+    let pieces = region.pieces.as_slice().into();
     Composite::new(
-        CompositeKind::Lathe,
+        Boundary::Lathe { pieces, turning },
         turned.faces,
         Formula::all(parts),
         Aabb::new(around[0].extend(low.y), around[1].extend(high.y)),

@@ -17,6 +17,7 @@ pub use contour::Contour;
 pub(crate) use contour::changes;
 pub use curve::Curve;
 pub use formula::{Formula, MAX_FORMULA_DEPTH};
+pub(crate) use pieces::Piece;
 pub use region::{Edge, MAX_EDGES, Outline, Region};
 pub use shells::turned_shells;
 

@@ -4,11 +4,10 @@ use octray_math::{Aabb, DAffine3, DMat3, DVec2, DVec3};
 
 use super::decompose::{Decomposition, PlaneSide, Wishes};
 use super::formula::Formula;
-use super::pieces::Piece;
 use super::region::Region;
 use crate::ShapeError;
-use crate::boundary::FlatBoundary;
-use crate::composite::{Composite, CompositeFace, CompositeKind};
+use crate::boundary::Boundary;
+use crate::composite::{Composite, CompositeFace};
 use crate::surface::Canonical;
 
 const WISHES: Wishes = Wishes {
@@ -50,25 +49,13 @@ pub(crate) fn prism(
         corner(low, 1),
         corner(high, 1),
     ];
-    let composite = Composite::new(
-        CompositeKind::Prism,
+    let pieces = region.pieces.as_slice().into();
+    Composite::new(
+        Boundary::Prism { pieces, z, scale },
         faces,
         Formula::all(parts),
         Aabb::from_points(corners),
-    )?;
-    let straight = |piece: &Piece| match piece {
-        Piece::Line(a, b) => Some([*a, *b]),
-        _ => None,
-    };
-    let edges: Option<Vec<[DVec2; 2]>> = region.pieces.iter().map(straight).collect();
-    Ok(match edges {
-        Some(edges) => composite.with_flat_boundary(FlatBoundary::Prism {
-            edges: edges.into(),
-            z,
-            scale,
-        }),
-        None => composite,
-    })
+    )
 }
 
 struct Sweep {

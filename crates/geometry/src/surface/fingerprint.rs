@@ -8,16 +8,16 @@ use super::{Canonical, QuadricForm, Surface};
 use crate::profile::Curve;
 
 /// What surfaces are compared by. Only surfaces of one kind have as many numbers.
-#[derive(Clone, Debug, PartialEq)]
-pub(super) struct Fingerprint {
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Fingerprint<'a> {
     pub(super) kind: u8,
-    pub(super) numbers: Vec<f64>,
+    pub(super) numbers: &'a [f64],
 }
 
-impl Fingerprint {
-    /// Of a surface in a scene of size `1 / scale`.
-    pub(super) fn new(surface: &Surface, scale: f64) -> Self {
-        let mut numbers = Vec::with_capacity(16);
+impl<'a> Fingerprint<'a> {
+    /// Of a surface in a scene of size `1 / scale`; the numbers are put where there were others.
+    pub(super) fn new(surface: &Surface, scale: f64, numbers: &'a mut Vec<f64>) -> Self {
+        numbers.clear();
         let kind = match surface {
             Surface::Plane { normal, offset } => {
                 numbers.push(offset * scale);
@@ -27,9 +27,39 @@ impl Fingerprint {
             Surface::Curved {
                 canonical,
                 local_from_scene,
-            } => curved(canonical, local_from_scene, scale, &mut numbers),
+            } => curved(canonical, local_from_scene, scale, numbers),
         };
         Self { kind, numbers }
+    }
+}
+
+/// Many of them, without an allocation for each.
+#[derive(Debug, Default)]
+pub(super) struct Fingerprints {
+    numbers: Vec<f64>,
+    /// Where the numbers of each end, and its kind.
+    ends: Vec<(u32, u8)>,
+}
+
+impl Fingerprints {
+    pub(super) fn push(&mut self, fingerprint: Fingerprint<'_>) {
+        self.numbers.extend_from_slice(fingerprint.numbers);
+        // Surfaces are numbered in 30 bits; those with many numbers are few.
+        self.ends
+            .push((self.numbers.len() as u32, fingerprint.kind));
+    }
+
+    pub(super) fn get(&self, index: usize) -> Fingerprint<'_> {
+        let start = index.checked_sub(1).map_or(0, |i| self.ends[i].0);
+        let (end, kind) = self.ends[index];
+        Fingerprint {
+            kind,
+            numbers: &self.numbers[start as usize..end as usize],
+        }
+    }
+
+    pub(super) const fn len(&self) -> usize {
+        self.ends.len()
     }
 }
 
@@ -260,6 +290,11 @@ fn ordered(u: DVec3, v: DVec3) -> (DVec3, DVec3) {
 ///
 /// By Newton's iteration for the rotation (Higham, *Computing the Polar Decomposition*, 1986).
 fn stretch(axes: &DMat3) -> [f64; 6] {
+    // Most balls are neither turned nor squeezed.
+    let size = axes.x_axis.x;
+    if size > 0.0 && *axes == DMat3::from_diagonal(DVec3::splat(size)) {
+        return [size, size, size, 0.0, 0.0, 0.0];
+    }
     let mut r = *axes;
     for _ in 0..60 {
         let back = r.inverse().transpose();

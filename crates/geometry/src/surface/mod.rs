@@ -13,6 +13,7 @@ mod near;
 mod plane;
 mod polynomial;
 mod quadric;
+mod reach;
 mod revolution;
 mod round;
 mod superellipsoid;
@@ -31,6 +32,7 @@ use local_box::LocalBox;
 pub use near::{NEAR, NearPair};
 pub(crate) use polynomial::range as polynomial_range;
 pub use quadric::QuadricForm;
+pub use reach::Reach;
 pub(crate) use table::points_upward;
 pub use table::{PLACE_TOLERANCE, SURFACE_TOLERANCE, SurfaceTable};
 #[cfg(test)]

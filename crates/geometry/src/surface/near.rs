@@ -3,7 +3,7 @@
 
 use std::collections::HashMap;
 
-use super::fingerprint::Fingerprint;
+use super::fingerprint::{Fingerprint, Fingerprints};
 use crate::SurfaceId;
 
 /// How near two distinct surfaces must be, in units of the scene's size, to be reported: 2^-20, a
@@ -37,7 +37,7 @@ fn index(value: f64) -> i64 {
 }
 
 /// The cell of a fingerprint, and those in which one that is near may lie.
-fn cells(fingerprint: &Fingerprint) -> Vec<HashCell> {
+fn cells(fingerprint: Fingerprint<'_>) -> Vec<HashCell> {
     let home: Vec<i64> = fingerprint.numbers.iter().map(|v| index(*v)).collect();
     let mut cells = vec![(fingerprint.kind, home.clone())];
     let mut doubtful = 0;
@@ -59,24 +59,25 @@ fn cells(fingerprint: &Fingerprint) -> Vec<HashCell> {
 }
 
 /// How far two fingerprints of one kind are apart.
-fn gap(a: &Fingerprint, b: &Fingerprint) -> f64 {
-    let pairs = a.numbers.iter().zip(&b.numbers);
+fn gap(a: Fingerprint<'_>, b: Fingerprint<'_>) -> f64 {
+    let pairs = a.numbers.iter().zip(b.numbers);
     pairs.fold(0.0, |gap, (x, y)| gap.max((x - y).abs()))
 }
 
 /// For each surface the nearest earlier one that nearly coincides with it.
 ///
 /// Where more than 32 crowd together the nearest of those that were looked at is named.
-pub(super) fn near_pairs(fingerprints: &[Fingerprint]) -> Vec<NearPair> {
+pub(super) fn near_pairs(fingerprints: &Fingerprints) -> Vec<NearPair> {
     let mut seen: HashMap<HashCell, Vec<u32>> = HashMap::new();
     let mut pairs = Vec::new();
-    for (id, fingerprint) in fingerprints.iter().enumerate() {
+    for id in 0..fingerprints.len() {
+        let fingerprint = fingerprints.get(id);
         let mut cells = cells(fingerprint);
         let nearest = cells
             .iter()
             .filter_map(|cell| seen.get(cell))
             .flatten()
-            .map(|&other| (other, gap(&fingerprints[other as usize], fingerprint)))
+            .map(|&other| (other, gap(fingerprints.get(other as usize), fingerprint)))
             .filter(|(_, gap)| *gap <= NEAR)
             .min_by(|a, b| a.1.total_cmp(&b.1).then(a.0.cmp(&b.0)));
         if let Some((first, gap)) = nearest {

@@ -42,11 +42,19 @@ fn symmetric(shift: f64, a: f64, c: f64) -> SignChanges {
 pub(super) fn classify(weights: DVec3, local: &LocalBox) -> Side {
     let magnitude = local.center.length_squared() + local.reach.length_squared() + 1.0;
     let (near, far) = local.absolute_range();
+    // Most are decided by the box around.
+    let low = (near * weights).length_squared() - 1.0;
+    let high = (far * weights).length_squared() - 1.0;
+    let side = decide(low, high, magnitude);
+    if side != Side::Both {
+        return side;
+    }
     let center = local.center * weights;
     let value = center.length_squared() - 1.0;
     let linear = local.linear(center * 2.0);
-    let low = ((near * weights).length_squared() - 1.0).max(value - linear);
-    let high =
-        ((far * weights).length_squared() - 1.0).min(value + linear + local.quadratic(weights));
-    decide(low, high, magnitude)
+    decide(
+        value - linear,
+        value + linear + local.quadratic(weights),
+        magnitude,
+    )
 }

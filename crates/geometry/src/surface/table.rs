@@ -8,10 +8,10 @@
 
 use std::collections::HashMap;
 
-use octray_math::DVec3;
+use octray_math::{DVec3, hash_combine};
 
 use super::Surface;
-use super::fingerprint::Fingerprint;
+use super::fingerprint::{Fingerprint, Fingerprints};
 use super::near::{NearPair, near_pairs};
 use crate::SurfaceId;
 
@@ -28,7 +28,11 @@ const HASHED: usize = 4;
 /// Width of a hash cell in tolerances: many, so that few fingerprints lie near a cell's face.
 const CELL: f64 = 256.0;
 
-type HashCell = (u8, [i64; HASHED]);
+/// The indices of the cells on each axis, which may have two where a number lies near a cell's face.
+type Indices = [[i64; 2]; HASHED];
+
+/// The end of a list of surfaces.
+const NONE: u32 = u32::MAX;
 
 /// Canonical surfaces, numbered in the order of their first use.
 #[derive(Debug)]
@@ -37,8 +41,13 @@ pub struct SurfaceTable {
     /// In units of the scene's size.
     tolerance: f64,
     surfaces: Vec<Surface>,
-    fingerprints: Vec<Fingerprint>,
-    cells: HashMap<HashCell, Vec<u32>>,
+    fingerprints: Fingerprints,
+    /// By a hash of the cell, the surface that came there last.
+    last: HashMap<u64, u32>,
+    /// For each surface the one that came there before it.
+    before: Vec<u32>,
+    /// The numbers of the surface that is being inserted.
+    numbers: Vec<f64>,
     merged: usize,
 }
 
@@ -51,8 +60,10 @@ impl SurfaceTable {
             scale: 1.0 / scene_size,
             tolerance: SURFACE_TOLERANCE + PLACE_TOLERANCE * (largest / scene_size),
             surfaces: Vec::new(),
-            fingerprints: Vec::new(),
-            cells: HashMap::new(),
+            fingerprints: Fingerprints::default(),
+            last: HashMap::new(),
+            before: Vec::new(),
+            numbers: Vec::new(),
             merged: 0,
         }
     }
@@ -62,26 +73,45 @@ impl SurfaceTable {
     /// A surface that is inserted again gets the same id again, whatever came between: what
     /// coincides with it and was there before has a lower id, what came later a higher one.
     pub fn insert(&mut self, surface: Surface) -> SurfaceId {
-        let fingerprint = Fingerprint::new(&surface, self.scale);
-        let first = self
-            .neighbours(&fingerprint)
-            .iter()
-            .filter_map(|cell| self.cells.get(cell))
-            .flatten()
-            .filter(|id| self.coincide(&self.fingerprints[**id as usize], &fingerprint))
-            .min();
-        if let Some(&id) = first {
+        let mut numbers = std::mem::take(&mut self.numbers);
+        let fingerprint = Fingerprint::new(&surface, self.scale, &mut numbers);
+        let indices = self.indices(fingerprint);
+        let found = self.first_coincident(fingerprint, &indices);
+        let id = found.unwrap_or(self.surfaces.len() as u32);
+        if found.is_some() {
             self.merged += 1;
-            return SurfaceId(id);
+        } else {
+            let home = hash(fingerprint.kind, &indices, 0);
+            let before = self.last.insert(home, id);
+            self.before.push(before.unwrap_or(NONE));
+            self.surfaces.push(surface);
+            self.fingerprints.push(fingerprint);
         }
-        let id = self.surfaces.len() as u32;
-        self.cells
-            .entry(self.home(&fingerprint))
-            .or_default()
-            .push(id);
-        self.surfaces.push(surface);
-        self.fingerprints.push(fingerprint);
+        self.numbers = numbers;
         SurfaceId(id)
+    }
+
+    /// The first surface that coincides with one of this fingerprint, in the cells where it may be.
+    fn first_coincident(&self, fingerprint: Fingerprint<'_>, indices: &Indices) -> Option<u32> {
+        let mut first = NONE;
+        for choice in 0..1_u32 << HASHED {
+            // Nearly always there is one cell on every axis.
+            let doubles =
+                (0..HASHED).any(|i| choice >> i & 1 == 1 && indices[i][0] == indices[i][1]);
+            if doubles {
+                continue;
+            }
+            let cell = hash(fingerprint.kind, indices, choice);
+            let mut next = self.last.get(&cell).copied().unwrap_or(NONE);
+            while next != NONE {
+                if next < first && self.coincide(self.fingerprints.get(next as usize), fingerprint)
+                {
+                    first = next;
+                }
+                next = self.before[next as usize];
+            }
+        }
+        (first != NONE).then_some(first)
     }
 
     /// How far two surfaces may be apart to count as one, in units of the scene's size.
@@ -104,15 +134,17 @@ impl SurfaceTable {
     /// The surfaces; a [`SurfaceId`] is an index.
     #[must_use]
     pub fn into_surfaces(self) -> Vec<Surface> {
-        self.surfaces
+        let mut surfaces = self.surfaces;
+        surfaces.shrink_to_fit();
+        surfaces
     }
 
-    fn coincide(&self, a: &Fingerprint, b: &Fingerprint) -> bool {
+    fn coincide(&self, a: Fingerprint<'_>, b: Fingerprint<'_>) -> bool {
         a.kind == b.kind
             && a.numbers.len() == b.numbers.len()
             && a.numbers
                 .iter()
-                .zip(&b.numbers)
+                .zip(b.numbers)
                 .all(|(x, y)| (x - y).abs() <= self.tolerance)
     }
 
@@ -120,30 +152,26 @@ impl SurfaceTable {
         libm::floor(value / (CELL * self.tolerance)) as i64
     }
 
-    fn home(&self, fingerprint: &Fingerprint) -> HashCell {
-        let number = |i: usize| fingerprint.numbers.get(i).copied().unwrap_or(0.0);
-        let cell = std::array::from_fn(|i| self.hash_index(number(i)));
-        (fingerprint.kind, cell)
+    /// The hash cells in which a coincident fingerprint may live, its own first: nearly always one.
+    fn indices(&self, fingerprint: Fingerprint<'_>) -> Indices {
+        std::array::from_fn(|i| {
+            let value = fingerprint.numbers.get(i).copied().unwrap_or(0.0);
+            let own = self.hash_index(value);
+            let other = [value - self.tolerance, value + self.tolerance]
+                .map(|shifted| self.hash_index(shifted))
+                .into_iter()
+                .find(|index| *index != own);
+            [own, other.unwrap_or(own)]
+        })
     }
+}
 
-    /// The hash cells in which a coincident fingerprint may live: nearly always one.
-    fn neighbours(&self, fingerprint: &Fingerprint) -> Vec<HashCell> {
-        let mut cells = vec![self.home(fingerprint)];
-        for (axis, &value) in fingerprint.numbers.iter().take(HASHED).enumerate() {
-            for shifted in [value - self.tolerance, value + self.tolerance] {
-                let index = self.hash_index(shifted);
-                if index != cells[0].1[axis] {
-                    for i in 0..cells.len() {
-                        let mut cell = cells[i];
-                        cell.1[axis] = index;
-                        cells.push(cell);
-                    }
-                    break;
-                }
-            }
-        }
-        cells
-    }
+/// Of a cell; `choice` has a bit for each axis on which the other index counts.
+fn hash(kind: u8, indices: &Indices, choice: u32) -> u64 {
+    (0..HASHED).fold(u64::from(kind), |hash, i| {
+        let index = indices[i][(choice >> i & 1) as usize];
+        hash_combine(hash, index as u64)
+    })
 }
 
 /// `v` or `-v`: the one whose first component clear of 0 is positive.

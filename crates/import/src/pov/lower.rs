@@ -266,6 +266,8 @@ impl Lowering {
         context: Option<&Context>,
     ) -> Option<Solid> {
         match &object.geometry {
+            // As it is: moving it nowhere would make another node.
+            Geometry::Solid(solid) if *frame == DAffine3::IDENTITY => Some(solid.clone()),
             Geometry::Solid(solid) => {
                 let made = solid.transform(*frame);
                 if made.is_err() {

@@ -7,6 +7,9 @@ use super::object::Geometry;
 use super::reader::{Parsed, Reader};
 use crate::Span;
 
+/// How many sizes of balls are remembered.
+const SHARED_SPHERES: usize = 1000;
+
 impl Reader<'_> {
     /// The numbers of a shape, up to its modifiers; `None`, with a warning, where they describe
     /// nothing that can be shown.
@@ -16,7 +19,7 @@ impl Reader<'_> {
                 let center = self.vector()?;
                 self.comma();
                 let radius = self.float()?;
-                Solid::sphere(radius)
+                self.sphere(radius)
                     .and_then(|s| s.translate(center))
                     .map(Geometry::Solid)
             }
@@ -86,6 +89,18 @@ impl Reader<'_> {
             _ => return self.unexpected("an object"),
         };
         Ok(self.usable(word, span, made))
+    }
+
+    /// A ball about the origin; those of one size are one solid.
+    fn sphere(&mut self, radius: f64) -> Result<Solid, ShapeError> {
+        if let Some(known) = self.spheres.get(&radius.to_bits()) {
+            return Ok(known.clone());
+        }
+        let made = Solid::sphere(radius)?;
+        if self.spheres.len() < SHARED_SPHERES {
+            self.spheres.insert(radius.to_bits(), made.clone());
+        }
+        Ok(made)
     }
 
     /// A shape, or a warning that it is left out.

@@ -1,8 +1,10 @@
 //! The state of one import, and the stream of tokens that its parts read from.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::PathBuf;
 use std::rc::Rc;
+
+use octray_geometry::Solid;
 
 use super::directives::Flow;
 use super::lexer::{Kind, Tape, Token, Words};
@@ -79,6 +81,8 @@ pub(super) struct Reader<'a> {
     pub(super) read_image_size: bool,
     pub(super) scene: Collected,
     pub(super) lowering: Lowering,
+    /// Balls by the bits of their radius.
+    pub(super) spheres: BTreeMap<u64, Solid>,
 }
 
 impl<'a> Reader<'a> {
@@ -119,6 +123,7 @@ impl<'a> Reader<'a> {
             read_image_size: false,
             scene: Collected::default(),
             lowering: Lowering::default(),
+            spheres: BTreeMap::new(),
         }
     }
 

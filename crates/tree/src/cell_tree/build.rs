@@ -17,6 +17,12 @@ pub trait Subdivide: Sync {
     /// `cell` is a little larger than the cell itself, see [`CellTree::CONTENT_MARGIN`].
     fn restrict(&self, parent: &Self::Content, cell: &Aabb) -> Self::Content;
 
+    /// The same for several cells.
+    fn restrict_each(&self, parent: &Self::Content, cells: &[Aabb]) -> Vec<Self::Content> {
+        let restricted = cells.iter().map(|cell| self.restrict(parent, cell));
+        restricted.collect()
+    }
+
     /// What the cell is.
     fn describe(&self, content: &Self::Content) -> Cell;
 
@@ -38,7 +44,7 @@ pub trait Subdivide: Sync {
     }
 
     /// The share of the cell's volume that its objects occupy, for [`Criteria::max_share`]; see
-    /// [`super::filled_share`]. Things without a volume occupy none.
+    /// [`super::filled_share`]. What is not known counts for none.
     fn share(&self, _content: &Self::Content, _cell: &Aabb) -> f64 {
         0.0
     }
@@ -103,6 +109,22 @@ impl CellTree {
         subdivide: &S,
         criteria: &Criteria,
     ) -> (Self, Vec<S::Content>) {
+        let mut leaves = Vec::new();
+        let mut keep = |leaf| leaves.push(leaf);
+        let tree = Self::build_into(root, contents, subdivide, criteria, &mut keep);
+        (tree, leaves)
+    }
+
+    /// Like [`CellTree::build`], but hands over the contents of the occupied cells one by one, in the
+    /// order of their indices, as soon as they are known: then millions of them need not exist side
+    /// by side.
+    pub fn build_into<S: Subdivide>(
+        root: Aabb,
+        contents: S::Content,
+        subdivide: &S,
+        criteria: &Criteria,
+        leaf: &mut impl FnMut(S::Content),
+    ) -> Self {
         let max_depth = criteria.max_depth.min(MAX_DEPTH);
         let mut tree = Self {
             root,
@@ -119,7 +141,7 @@ impl CellTree {
             held: criteria.memory_limit.min(Criteria::LARGEST_MEMORY),
         };
         let sizes = Sizes(subdivide);
-        let mut leaves = Vec::new();
+        let mut leaves = 0;
         // Of finished leaves, as held.
         let mut leaf_bytes = 0;
         let mut level = vec![Frontier {
@@ -127,6 +149,8 @@ impl CellTree {
             content: contents,
             futile: 0,
         }];
+        // What a division added to the tree on the level before, on average.
+        let mut usual = None;
         // Where the words of this level go: 8 per block of the level above, the root by itself.
         let mut first_block = None;
         loop {
@@ -140,8 +164,9 @@ impl CellTree {
             };
             let mut divided = Vec::new();
             if level[0].key.depth < max_depth {
-                let found = divide_level(&level, &root, subdivide, criteria, &room);
+                let found = divide_level(&level, &root, subdivide, criteria, &room, usual);
                 divided = found.cells;
+                usual = found.usual;
                 tree.stats.stopped_by_size += found.refused;
                 tree.stats.stopped_by_memory |= found.out_of_memory;
                 tree.stats.peak_bytes = tree.stats.peak_bytes.max(held + found.peak);
@@ -173,8 +198,9 @@ impl CellTree {
                         let bytes = subdivide.bytes(&cell.content);
                         tree.stats.bytes += bytes;
                         leaf_bytes += bytes + Sizes::<S>::BESIDE;
-                        leaves.push(cell.content);
-                        Node::Occupied(leaves.len() as u32 - 1)
+                        leaf(cell.content);
+                        leaves += 1;
+                        Node::Occupied(leaves - 1)
                     }
                 };
                 match first_block {
@@ -187,7 +213,7 @@ impl CellTree {
             }
             if next.is_empty() {
                 tree.stats.node_bytes = tree.node_bytes();
-                return (tree, leaves);
+                return tree;
             }
             first_block = Some(level_blocks);
             level = next;
@@ -224,6 +250,45 @@ struct DividedLevel<C> {
     out_of_memory: bool,
     /// The most bytes held beside what there was before.
     peak: u64,
+    /// How many bytes a division adds to the tree, on average.
+    usual: Option<u64>,
+}
+
+/// Where far more cells could be divided than there is room for, so many times those that fit are
+/// looked at: the ones that cost most.
+const LOOKED_AT: u64 = 2;
+
+/// Which cells of a level are worth looking at, and how many of the others are occupied: if divisions
+/// add to the tree what they usually do, there is not nearly room for all.
+fn promising<S: Subdivide>(
+    level: &[Frontier<S::Content>],
+    subdivide: &S,
+    room: u64,
+    usual: Option<u64>,
+) -> (Vec<bool>, u64) {
+    let fit = usual.map_or(u64::MAX, |usual| {
+        LOOKED_AT.saturating_mul(room / usual.max(1))
+    });
+    let mut costs: Vec<(f64, usize)> = Vec::new();
+    if fit < level.len() as u64 {
+        let cost = |(index, cell): (usize, &Frontier<S::Content>)| match subdivide
+            .describe(&cell.content)
+        {
+            Cell::Empty(_) => None,
+            Cell::Occupied { cost, .. } => Some((cost, index)),
+        };
+        costs = level.iter().enumerate().filter_map(cost).collect();
+    }
+    if costs.len() as u64 <= fit {
+        return (vec![true; level.len()], 0);
+    }
+    costs.par_sort_unstable_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
+    let mut wanted = vec![false; level.len()];
+    let (first, others) = costs.split_at(fit as usize);
+    for (_, index) in first {
+        wanted[*index] = true;
+    }
+    (wanted, others.len() as u64)
 }
 
 /// Divides the cells of a level that are worth it; if there is no room for all, those that save most.
@@ -233,9 +298,12 @@ fn divide_level<S: Subdivide>(
     subdivide: &S,
     criteria: &Criteria,
     room: &Limits,
+    usual: Option<u64>,
 ) -> DividedLevel<S::Content> {
+    let (wanted, unlikely) = promising(level, subdivide, room.kept, usual);
+    let mut wanted = wanted.as_slice();
     let mut divided: Vec<Option<Division<S::Content>>> = Vec::with_capacity(level.len());
-    let (mut held, mut peak) = (0, 0);
+    let (mut held, mut kept, mut peak) = (0, 0, 0);
     let mut rest = level;
     while !rest.is_empty() {
         let mut bytes = 0;
@@ -246,23 +314,33 @@ fn divide_level<S: Subdivide>(
         });
         let (batch, later) = rest.split_at(fits.count());
         rest = later;
-        let mut found: Vec<_> = batch
-            .par_iter()
-            .map(|cell| divide(cell, root, subdivide, criteria))
+        let (looked_at, later) = wanted.split_at(batch.len());
+        wanted = later;
+        let mut found: Vec<_> = (batch.par_iter().zip(looked_at))
+            .map(|(cell, wanted)| {
+                wanted
+                    .then(|| divide(cell, root, subdivide, criteria))
+                    .flatten()
+            })
             .collect();
         let made: u64 = found.iter().flatten().map(|d| d.held).sum();
         peak = peak.max(held + made);
         for division in found.iter_mut().flatten() {
-            if held + division.held <= room.held {
+            // Beyond what the finished tree may take, not all will be divided.
+            if held + division.held <= room.held && kept <= room.kept {
                 held += division.held;
+                kept += division.kept;
             } else {
                 division.children = None;
             }
         }
         divided.append(&mut found);
     }
-    let refused_by_size = keep_most_useful(&mut divided, room.kept, |d| d.kept);
+    let refused_by_size = unlikely + keep_most_useful(&mut divided, room.kept, |d| d.kept);
     let refused_by_memory = keep_most_useful(&mut divided, room.held, |d| d.held);
+    let count = divided.iter().flatten().count() as u64;
+    let kept: u64 = divided.iter().flatten().map(|d| d.kept).sum();
+    let usual = (count > 0).then(|| kept / count);
     // Children that were given up too early are made once more.
     let children = |cell, division: Division<S::Content>| {
         let made = division.children;
@@ -276,6 +354,7 @@ fn divide_level<S: Subdivide>(
         refused: refused_by_size + refused_by_memory,
         out_of_memory: refused_by_memory > 0,
         peak,
+        usual,
     }
 }
 
@@ -331,21 +410,23 @@ fn divide<S: Subdivide>(
         return None;
     }
     let margin = root.size().x * CellTree::CONTENT_MARGIN;
-    let child = |octant: u32| {
-        let key = cell.key.child(octant);
-        let content = subdivide.restrict(&cell.content, &key.bounds(root).inflated(margin));
-        Frontier {
+    let keys: [CellKey; 8] = std::array::from_fn(|octant| cell.key.child(octant as u32));
+    let bounds = keys.map(|key| key.bounds(root).inflated(margin));
+    // The upper levels have fewer cells than there are threads.
+    let contents: Vec<_> = if parts > MANY_PARTS {
+        (bounds.par_iter())
+            .map(|bounds| subdivide.restrict(&cell.content, bounds))
+            .collect()
+    } else {
+        subdivide.restrict_each(&cell.content, &bounds)
+    };
+    let mut children: Vec<_> = (keys.into_iter().zip(contents))
+        .map(|(key, content)| Frontier {
             key,
             content,
             futile: 0,
-        }
-    };
-    // The upper levels have fewer cells than there are threads.
-    let mut children: Vec<_> = if parts > MANY_PARTS {
-        (0..8).into_par_iter().map(child).collect()
-    } else {
-        (0..8).map(child).collect()
-    };
+        })
+        .collect();
     let mut expected = 0.5 * criteria.visit_cost;
     for child in &children {
         expected += 0.25

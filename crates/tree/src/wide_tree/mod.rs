@@ -17,6 +17,7 @@
 //! point of a triangle is a mean of its corners with the weights reported, so it is such a point
 //! however thin the triangle and however flat the line runs over it.
 
+mod beam;
 mod build;
 mod cost;
 mod divide;
@@ -35,7 +36,7 @@ use std::sync::atomic::AtomicU64;
 
 use bytemuck::{Pod, Zeroable};
 use octray_kernels::{Boxes8, Lanes};
-use octray_math::Aabb;
+use octray_math::{Aabb, DVec3};
 use rayon::prelude::*;
 use thiserror::Error;
 
@@ -45,8 +46,10 @@ use reference::{PaddedBox, Reference};
 use split::Piece;
 use subtree::Plan;
 
+pub use beam::{BEAM, Beam, BeamLine, BeamVisitor, GROUPS, PendingBeam};
+pub use frame::LocalLine;
 pub use items::{Coordinates, Items};
-pub use walk::WalkCost;
+pub use walk::{LeafVisitor, Pending, WalkCost};
 
 /// No way from the root has more nodes than this plus one, whatever the items.
 const MAX_DEPTH: u32 = 73;
@@ -351,6 +354,33 @@ impl WideTree {
             bytemuck::cast_slice(&self.nodes),
             bytemuck::cast_slice(&self.items),
         ]
+    }
+
+    /// The items, leaf by leaf. Places in this list are what a [`LeafVisitor`] is shown.
+    #[must_use]
+    pub fn items(&self) -> &[u32] {
+        &self.items
+    }
+
+    /// The places of the items of each leaf, in no particular order.
+    pub fn leaves(&self) -> impl Iterator<Item = std::ops::Range<usize>> + '_ {
+        self.nodes.iter().flat_map(|node| {
+            let used = node.boxes.planes[0].map(|x| x < f32::INFINITY);
+            let links = node.links.into_iter().zip(used);
+            links.filter_map(|(link, used)| link::items(link).filter(|_| used))
+        })
+    }
+
+    /// A point in the tree's coordinates, rounded to the nearest.
+    #[must_use]
+    pub fn local(&self, point: DVec3) -> [f32; 3] {
+        self.frame.point(point).to_array().map(|x| x as f32)
+    }
+
+    /// How the kernels run.
+    #[must_use]
+    pub const fn lanes(&self) -> Lanes {
+        self.lanes
     }
 
     /// The same tree with kernels that run as given. No answer depends on it.

@@ -101,6 +101,8 @@ impl Instances {
             }));
         }
         let config = WideTreeConfig {
+            // Taking a line into a prototype costs more than a node of boxes.
+            leaf_size: 1,
             memory_limit: left,
             ..*config
         };

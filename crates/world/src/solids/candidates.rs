@@ -2,7 +2,7 @@
 
 use std::cmp::Ordering;
 
-use octray_geometry::csg::{Constant, Lowered, LoweredScene, Lowering};
+use octray_geometry::csg::{Constant, LoweredScene, Lowering};
 use octray_geometry::surface::{PLACE_TOLERANCE, SURFACE_TOLERANCE};
 use octray_geometry::{SceneFrame, Sheet, Solid};
 use octray_math::Aabb;
@@ -19,6 +19,8 @@ pub(super) struct Candidate<'a> {
     pub(super) clip: Option<&'a Solid>,
     /// In the coordinates of the scene.
     pub(super) bounds: Aabb,
+    /// How large it counts as where solids overlap.
+    pub(super) size: f64,
 }
 
 /// What merged surfaces and rounding move, many times over.
@@ -52,30 +54,61 @@ impl<'a> Candidate<'a> {
             boundary,
             clip,
             bounds,
+            size: if bounds.is_bounded() {
+                bounds.diagonal()
+            } else {
+                f64::INFINITY
+            },
         })
     }
 
     /// Higher priority, then smaller, then later: what is inside something else is seen there.
     pub(super) fn rank(&self, other: &Self) -> Ordering {
         (other.object.priority.cmp(&self.object.priority))
-            .then(self.size().total_cmp(&other.size()))
+            .then(self.size.total_cmp(&other.size))
             .then(other.id.cmp(&self.id))
     }
+}
 
-    /// How large it counts as where solids overlap.
-    pub(super) fn size(&self) -> f64 {
-        if self.bounds.is_bounded() {
-            self.bounds.diagonal()
-        } else {
-            f64::INFINITY
+/// The expressions of one object.
+pub(super) struct LoweredObject {
+    pub(super) id: ObjectId,
+    pub(super) boundary: Expression,
+    /// Of a solid, what is true everywhere.
+    pub(super) clip: Expression,
+}
+
+/// An expression as a range of words, or what it always is.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(super) enum Expression {
+    Constant(Constant),
+    Words([u32; 2]),
+}
+
+impl Expression {
+    fn lower(solid: &Solid, lowering: &mut Lowering, words: &mut Vec<u32>) -> Self {
+        let start = words.len() as u32;
+        match lowering.lower_into(solid, words) {
+            Some(constant) => Self::Constant(constant),
+            None => Self::Words([start, words.len() as u32]),
+        }
+    }
+
+    /// Its words, or what it always is.
+    pub(super) fn words(self, all: &[u32]) -> Result<&[u32], Constant> {
+        match self {
+            Self::Constant(constant) => Err(constant),
+            Self::Words([start, end]) => Ok(&all[start as usize..end as usize]),
         }
     }
 }
 
 /// The objects' expressions.
 pub(super) struct Expressions {
-    /// For each object its boundary and its clip.
-    pub(super) lowered: Vec<(ObjectId, Lowered, Option<Lowered>)>,
+    /// For each object its expressions.
+    pub(super) lowered: Vec<LoweredObject>,
+    /// The words of all expressions.
+    pub(super) words: Vec<u32>,
     /// The object of each face.
     pub(super) owners: Vec<ObjectId>,
     pub(super) merged_surfaces: usize,
@@ -95,14 +128,22 @@ impl Expressions {
         }
         let mut lowered = Vec::with_capacity(candidates.len());
         let mut owners = Vec::new();
+        let mut words = Vec::new();
         for candidate in candidates {
-            let boundary = lowering.lower(candidate.boundary);
-            let clip = candidate.clip.map(|clip| lowering.lower(clip));
+            let mut lower = |solid| Expression::lower(solid, &mut lowering, &mut words);
+            let boundary = lower(candidate.boundary);
+            let everywhere = Expression::Constant(Constant::True);
+            let clip = candidate.clip.map_or(everywhere, lower);
             owners.resize(lowering.face_count(), candidate.id);
-            lowered.push((candidate.id, boundary, clip));
+            lowered.push(LoweredObject {
+                id: candidate.id,
+                boundary,
+                clip,
+            });
         }
         Self {
             lowered,
+            words,
             owners,
             merged_surfaces: lowering.merged_surfaces(),
             scene: lowering.finish(),
@@ -111,11 +152,13 @@ impl Expressions {
 
     /// Tells these objects from others.
     pub(super) fn fingerprint(&self) -> u64 {
-        let words = self.lowered.iter().flat_map(|(id, boundary, clip)| {
-            let codes = std::iter::once(boundary).chain(clip);
-            std::iter::once(id.0).chain(codes.flat_map(|code| {
-                match code {
-                    Ok(code) => code.words(),
+        let words = self.lowered.iter().flat_map(|object| {
+            // A clip that is true everywhere is none.
+            let clip = Some(object.clip).filter(|c| *c != Expression::Constant(Constant::True));
+            let expressions = std::iter::once(object.boundary).chain(clip);
+            std::iter::once(object.id.0).chain(expressions.flat_map(|expression| {
+                match expression.words(&self.words) {
+                    Ok(words) => words,
                     Err(Constant::True) => &[u32::MAX],
                     Err(Constant::False) => &[],
                 }

@@ -14,6 +14,7 @@ use octray_tree::{Division, Partition};
 use super::Solids;
 use super::candidates::{Expressions, candidates, slack};
 use super::cells::{Cells, Content};
+use super::leaf::LeafWriter;
 use super::listed_cells::{ListedCells, list_of};
 use super::operand_cells::{OperandCells, operands_in, operands_of_faces};
 use crate::cell_list::ListedScene;
@@ -28,32 +29,35 @@ pub(super) struct Plan<'a> {
     pub(super) frame: &'a SceneFrame,
 }
 
-/// The cells with their contents, and how operands were marked.
+/// The cells, and how operands were marked.
 pub(super) struct Divided {
     pub(super) cells: Partition,
-    pub(super) contents: Vec<Content>,
     pub(super) marking: Option<MarkingStats>,
 }
 
 impl Plan<'_> {
-    /// Divides the space around `bounds`, which holds `content`.
+    /// Divides the space around `bounds`, which holds `content`; the contents of occupied cells go to
+    /// `leaves`.
     pub(super) fn divide(
         &self,
         bounds: &Aabb,
         content: Content,
         by_faces: &Cells<'_>,
         operands: &[Operand],
+        leaves: &mut LeafWriter,
     ) -> Result<Divided, CellListError> {
         let Self {
             division, config, ..
         } = *self;
         let (criteria, table) = (&config.criteria, config.table);
         if self.membership == Membership::Analytic {
-            let (cells, contents) =
-                Partition::build(bounds, content, by_faces, division, criteria, table);
+            let how = (division, table);
+            let mut keep = |content: Content| {
+                leaves.push(&content);
+            };
+            let cells = Partition::build_into(bounds, content, by_faces, how, criteria, &mut keep);
             return Ok(Divided {
                 cells,
-                contents,
                 marking: None,
             });
         }
@@ -82,6 +86,9 @@ impl Plan<'_> {
         let touched =
             |content: &Content| operands_in(content.expressions(), &operand_of).len() as u64;
         let marks = contents.iter().map(touched).sum();
+        for content in &contents {
+            leaves.push(content);
+        }
         let stats = marker.stats();
         drop(marker);
         let marking = MarkingStats {
@@ -91,7 +98,6 @@ impl Plan<'_> {
         };
         Ok(Divided {
             cells,
-            contents,
             marking: Some(marking),
         })
     }

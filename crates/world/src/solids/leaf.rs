@@ -4,6 +4,7 @@ use std::collections::HashMap;
 use std::ops::Range;
 
 use octray_geometry::csg::{self, Face};
+use octray_math::hash_combine;
 
 use super::cells::Content;
 
@@ -88,38 +89,6 @@ const fn range(ends: [u32; 2]) -> Range<usize> {
 }
 
 impl Leaves {
-    /// From the contents of the cells, in the order of their indices.
-    pub(super) fn new(contents: &[Content]) -> Self {
-        let mut leaves = Self::default();
-        let mut seen: HashMap<Vec<u32>, [u32; 2]> = HashMap::new();
-        for content in contents {
-            let first = [leaves.surfaces.len() as u32, leaves.objects.len() as u32];
-            for object in &content.objects {
-                let mut store = |words: &[u32]| {
-                    *seen.entry(words.to_vec()).or_insert_with(|| {
-                        let start = leaves.words.len() as u32;
-                        leaves.words.extend_from_slice(words);
-                        [start, leaves.words.len() as u32]
-                    })
-                };
-                let expression = store(content.expression(object));
-                let clip = store(content.clip(object));
-                leaves.objects.push(LeafObject {
-                    rank: object.rank,
-                    expression,
-                    clip,
-                });
-            }
-            leaves.surfaces.extend_from_slice(&content.surfaces);
-            leaves.leaves.push(Leaf {
-                surfaces: [first[0], leaves.surfaces.len() as u32],
-                objects: [first[1], leaves.objects.len() as u32],
-                base: content.base,
-            });
-        }
-        leaves
-    }
-
     pub(super) fn get(&self, leaf: u32) -> LeafView<'_> {
         let leaf = &self.leaves[leaf as usize];
         LeafView {
@@ -166,5 +135,73 @@ impl Leaves {
             .chain(self.surfaces.iter().copied())
             .chain(objects)
             .chain(self.words.iter().copied())
+    }
+}
+
+/// Writes the contents of cells down as they become leaves.
+#[derive(Debug, Default)]
+pub(super) struct LeafWriter {
+    leaves: Leaves,
+    /// By a hash of its words, an expression that was written. Of two with one hash only the first is
+    /// found again.
+    seen: HashMap<u64, [u32; 2]>,
+}
+
+impl LeafWriter {
+    /// Adds the contents of the next leaf; returns its index.
+    pub(super) fn push(&mut self, content: &Content) -> u32 {
+        let index = self.leaves.leaves.len() as u32;
+        let first = [
+            self.leaves.surfaces.len() as u32,
+            self.leaves.objects.len() as u32,
+        ];
+        for object in content.objects() {
+            let expression = self.stored(object.expression);
+            let clip = self.stored(object.clip);
+            self.leaves.objects.push(LeafObject {
+                rank: object.rank,
+                expression,
+                clip,
+            });
+        }
+        let leaves = &mut self.leaves;
+        leaves.surfaces.extend_from_slice(content.surfaces());
+        leaves.leaves.push(Leaf {
+            surfaces: [first[0], leaves.surfaces.len() as u32],
+            objects: [first[1], leaves.objects.len() as u32],
+            base: content.base,
+        });
+        index
+    }
+
+    /// Where words are, which are written if they have not been before.
+    fn stored(&mut self, words: &[u32]) -> [u32; 2] {
+        if words.is_empty() {
+            return [0, 0];
+        }
+        let all = &mut self.leaves.words;
+        let hash = words
+            .iter()
+            .fold(0, |hash, word| hash_combine(hash, u64::from(*word)));
+        if let Some(&known) = self.seen.get(&hash)
+            && all[range(known)] == *words
+        {
+            return known;
+        }
+        let start = all.len() as u32;
+        all.extend_from_slice(words);
+        let found = [start, all.len() as u32];
+        self.seen.entry(hash).or_insert(found);
+        found
+    }
+
+    /// All of them.
+    pub(super) fn finish(self) -> Leaves {
+        let mut leaves = self.leaves;
+        leaves.leaves.shrink_to_fit();
+        leaves.surfaces.shrink_to_fit();
+        leaves.objects.shrink_to_fit();
+        leaves.words.shrink_to_fit();
+        leaves
     }
 }

@@ -30,10 +30,7 @@ impl OperandBoxes {
 
     /// The share of a cell that boxes of the operands in it fill.
     pub(super) fn share(&self, content: &Content, cell: &Aabb) -> f64 {
-        let faces = content.objects.iter().flat_map(|object| {
-            let words = [content.expression(object), content.clip(object)];
-            words.into_iter().flat_map(csg::faces)
-        });
+        let faces = content.expressions().flat_map(csg::faces);
         let mut boxes: Vec<Aabb> = Vec::new();
         for face in faces {
             let bounds = self.0[face.0 as usize];

@@ -8,7 +8,7 @@ use octray_geometry::surface::Side;
 use octray_math::Aabb;
 use octray_tree::{Cell, Subdivide};
 
-use super::cells::{Cells, Content};
+use super::cells::{Cells, Content, Draft};
 
 /// The contents of a cell, and the operands that it touches.
 #[derive(Clone, Debug, Default)]
@@ -138,16 +138,14 @@ impl<'a> OperandCells<'a> {
             })
         };
         let before = &parent.content;
-        let mut content = Content {
-            base: before.base,
-            ..Content::default()
-        };
-        for object in &before.objects {
+        let mut draft = Draft::default();
+        draft.begin(before.base);
+        for object in before.objects() {
             let is_shell = self.cells.ranked[object.rank as usize].shell;
-            let (expression, clip) = (before.expression(object), before.clip(object));
-            content.add(object.rank, is_shell, expression, clip, &mut truth);
+            let (expression, clip) = (object.expression, object.clip);
+            draft.add(object.rank, is_shell, expression, clip, &mut truth);
         }
-        content.finish(self.cells.faces);
+        let content = draft.finish(self.cells.faces, |surface| self.cells.cost(surface));
         let marks = self
             .marker
             .keep(touched, operands_in(content.expressions(), self.operand_of));

@@ -2,18 +2,22 @@
 
 use octray_geometry::Membership;
 use octray_geometry::SceneFrame;
-use octray_geometry::csg::{Constant, Face, Lowered, LoweredScene, MeshOperand};
+use octray_geometry::csg::{Constant, Face, LoweredScene, MeshOperand};
 use octray_geometry::mesh::MeshSolid;
+use octray_geometry::surface::Surface;
 use octray_math::Aabb;
 use octray_scene::Scene;
-use octray_tree::{Division, Encoding, WideTreeConfig};
+use octray_tree::{Criteria, Division, Encoding, WideTreeConfig};
+use rayon::prelude::*;
 
 use super::candidates::{Candidate, Expressions, candidates};
-use super::cells::{Cells, Content};
+use super::cells::{Cells, Content, Draft, ScratchPool, cost};
 use super::divide::{Plan, check_list};
+use super::leaf::LeafWriter;
+use super::object_tree::ObjectTree;
 use super::operand_boxes::OperandBoxes;
 use super::volumes::Volumes;
-use super::{Leaves, MeshSurface, Ranked, Solids};
+use super::{MeshSurface, Ranked, Solids};
 use crate::{CellList, Method, WorldConfig, WorldError};
 
 impl Solids {
@@ -49,7 +53,8 @@ impl Solids {
             check_list(list, division, &expressions)?;
         }
         let Expressions {
-            lowered,
+            mut lowered,
+            words,
             owners,
             merged_surfaces,
             scene:
@@ -60,13 +65,13 @@ impl Solids {
                     operands,
                 },
         } = expressions;
-        candidates.sort_by(Candidate::rank);
+        candidates.par_sort_unstable_by(Candidate::rank);
         let ranked: Vec<Ranked> = candidates.iter().map(Ranked::new).collect();
         let mut sizes = Vec::new();
         if scene.has_instances() {
             sizes.resize(scene.objects().len(), 0.0);
             for candidate in &candidates {
-                sizes[candidate.id.0 as usize] = candidate.size();
+                sizes[candidate.id.0 as usize] = candidate.size;
             }
         }
         let mut rank_of = vec![u32::MAX; scene.objects().len()];
@@ -84,24 +89,24 @@ impl Solids {
             triangles,
         )?;
 
-        let mut root = Content::default();
-        let mut unbounded = Content::default();
+        let (mut root, mut unbounded) = (Draft::default(), Draft::default());
         let mut everywhere = Vec::new();
-        for (id, boundary, clip) in lowered {
-            let rank = rank_of[id.0 as usize];
+        lowered.sort_unstable_by_key(|object| rank_of[object.id.0 as usize]);
+        for object in lowered {
+            let rank = rank_of[object.id.0 as usize];
+            let boundary = object.boundary.words(&words);
+            let clip = object.clip.words(&words);
             let shell = ranked[rank as usize].shell;
             if !shell && boundary == Err(Constant::True) {
                 everywhere.push(rank);
             }
-            add(&mut root, rank, shell, &boundary, clip.as_ref());
+            add(&mut root, rank, shell, boundary, clip);
             if !candidates[rank as usize].bounds.is_bounded() {
-                add(&mut unbounded, rank, shell, &boundary, clip.as_ref());
+                add(&mut unbounded, rank, shell, boundary, clip);
             }
         }
-        for content in [&mut root, &mut unbounded] {
-            content.objects.sort_by_key(|object| object.rank);
-            content.finish(&faces);
-        }
+        let [root, unbounded] = [root, unbounded]
+            .map(|mut draft| draft.finish(&faces, |surface| cost(&surfaces, surface)));
 
         let bounds = candidates
             .iter()
@@ -114,21 +119,28 @@ impl Solids {
             Method::Boxes => Some(Volumes::new(&object_bounds, false)),
             _ => None,
         };
-        let mut contents = Vec::new();
+        // Unless someone wants cells.
+        let leaves_open = config.method == Method::Auto
+            && config.criteria == Criteria::default()
+            && list.is_none();
+        let small = leaves_open && meshes.is_empty() && ObjectTree::suits(&root, &object_bounds);
+        let mut leaves = LeafWriter::default();
         let mut cells = None;
         let mut marking = None;
         let mut outer = root;
         let mut whole = None;
         let operand_boxes =
             by_share.then(|| OperandBoxes::new(&operands, &face_owner, &object_bounds));
-        if let Some(division) = division.filter(|_| !bounds.is_empty()) {
+        if let Some(division) = division.filter(|_| !(small || bounds.is_empty())) {
             let restricting = Cells {
                 faces: &faces,
                 surfaces: &surfaces,
                 meshes: &meshes,
                 ranked: &ranked,
                 bounds: &object_bounds,
+                reaches: &surfaces.iter().map(Surface::reach).collect::<Vec<_>>(),
                 operands: operand_boxes.as_ref(),
+                scratch: ScratchPool::default(),
             };
             if matches!(division, Division::Octree(Encoding::Lvsi(_), _)) {
                 whole = Some(outer.clone());
@@ -140,22 +152,26 @@ impl Solids {
                 config,
                 frame,
             };
-            let divided = plan.divide(&bounds, outer, &restricting, &operands)?;
-            contents = divided.contents;
+            let divided = plan.divide(&bounds, outer, &restricting, &operands, &mut leaves)?;
             cells = Some(divided.cells);
             marking = divided.marking;
             outer = unbounded;
         }
         let mut leaf_of = |content: Content| {
-            (!content.objects.is_empty() || content.base != 0).then(|| {
-                contents.push(content);
-                contents.len() as u32 - 1
-            })
+            let is_empty = content.object_count() == 0 && content.base == 0;
+            (!is_empty).then(|| leaves.push(&content))
         };
         let whole = whole.and_then(&mut leaf_of);
         let outer = leaf_of(outer);
         let has_unbounded = object_bounds.iter().any(|b| !b.is_bounded());
-        let leaves = Leaves::new(&contents);
+        let leaves = leaves.finish();
+        let objects = match outer.filter(|_| small) {
+            Some(leaf) => {
+                let view = leaves.get(leaf);
+                Some(ObjectTree::build(&view, &object_bounds, &config.triangles)?)
+            }
+            None => None,
+        };
         let priorities_differ = ranked
             .windows(2)
             .any(|pair| pair[0].priority != pair[1].priority);
@@ -168,6 +184,7 @@ impl Solids {
             priorities_differ,
             leaves,
             cells,
+            objects,
             volumes,
             outer,
             whole,
@@ -182,16 +199,22 @@ impl Solids {
 }
 
 /// Adds an object with nothing decided but what is constant by itself.
-fn add(content: &mut Content, rank: u32, shell: bool, boundary: &Lowered, clip: Option<&Lowered>) {
+fn add(
+    content: &mut Draft,
+    rank: u32,
+    shell: bool,
+    boundary: Result<&[u32], Constant>,
+    clip: Result<&[u32], Constant>,
+) {
     let expression = match boundary {
-        Ok(code) => code.words(),
+        Ok(words) => words,
         Err(Constant::True) if !shell => return content.fill(rank),
         Err(_) => return,
     };
     let clip = match clip {
-        None | Some(Err(Constant::True)) => &[],
-        Some(Err(Constant::False)) => return,
-        Some(Ok(code)) => code.words(),
+        Err(Constant::True) => &[],
+        Err(Constant::False) => return,
+        Ok(words) => words,
     };
     content.add(rank, shell, expression, clip, &mut |_| None);
 }

@@ -11,6 +11,9 @@ if TYPE_CHECKING:
 
     from octray.bench.scene import Scene
 
+#: Of all files that hold a scene; the names of meshes begin like that of their scene.
+SUFFIXES = (".pov", ".dat", ".xml", ".py")
+
 
 def write_pov(scene: Scene, folder: Path) -> None:
     """Write the scene in POV-Ray's language, unless it is there."""

@@ -72,9 +72,9 @@ class Mitsuba:
         """Write the scene and its meshes."""
         write_mitsuba(scene, folder)
 
-    def command(self, scene: Scene, folder: Path, threads: int) -> list[str]:
+    def command(self, scene: Scene, threads: int) -> list[str]:
         """Give a script's call; Mitsuba's own command does not render twice."""
-        files = [str(folder / f"{scene.name}.xml"), str(threads), str(folder / "mitsuba.png")]
+        files = [f"{scene.name}.xml", str(threads), "mitsuba.png"]
         return [self._python(), "-c", _MITSUBA, *files]
 
     def environment(self, _folder: Path) -> dict[str, str]:

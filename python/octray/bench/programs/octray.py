@@ -52,12 +52,12 @@ class Octray:
         """Write one file."""
         write_pov(scene, folder)
 
-    def command(self, scene: Scene, folder: Path, threads: int) -> list[str]:
+    def command(self, scene: Scene, threads: int) -> list[str]:
         """Give what a user types."""
         width, height = scene.size
         options = f"--size {width}x{height} --threads {threads} --json --quiet".split()
-        command = [sys.executable, "-m", "octray", "render", str(folder / f"{scene.name}.pov")]
-        return [*command, "-o", str(folder / "octray.png"), *options]
+        command = [sys.executable, "-m", "octray", "render", f"{scene.name}.pov"]
+        return [*command, "-o", "octray.png", *options]
 
     def environment(self, _folder: Path) -> dict[str, str]:
         """Let it find the octray that is running."""
@@ -75,8 +75,8 @@ class OctrayPython(Octray):
     name = "octray, Python"
 
     def objection(self, scene: Scene) -> str | None:
-        """Only meshes come in binary files."""
-        if scene.spheres or scene.solids or not scene.meshes:
+        """Only meshes come in binary files. An empty picture tells what it costs by itself."""
+        if scene.counts.keys() - {"triangles"}:
             return "is for meshes in binary files"
         return None
 
@@ -84,9 +84,8 @@ class OctrayPython(Octray):
         """Write the script and the meshes."""
         write_mitsuba(scene, folder)
         with (folder / f"{scene.name}.py").open("w", encoding="utf-8") as file:
-            script.write(scene, file, folder)
+            script.write(scene, file)
 
-    def command(self, scene: Scene, folder: Path, threads: int) -> list[str]:
+    def command(self, scene: Scene, threads: int) -> list[str]:
         """Run the script."""
-        path = folder / f"{scene.name}.py"
-        return [sys.executable, str(path), str(folder / "octray-python.png"), str(threads)]
+        return [sys.executable, f"{scene.name}.py", "octray-python.png", str(threads)]

@@ -47,11 +47,11 @@ class PovRay:
         """Write one file."""
         write_pov(scene, folder)
 
-    def command(self, scene: Scene, folder: Path, threads: int) -> list[str]:
+    def command(self, scene: Scene, threads: int) -> list[str]:
         """Give the command for the same picture, without display and pauses."""
         width, height = scene.size
         options = f"+FN +W{width} +H{height} +WT{threads} -A -D -P".split()
-        files = [f"+I{folder / scene.name}.pov", f"+O{folder / 'povray.png'}"]
+        files = [f"+I{scene.name}.pov", "+Opovray.png"]
         return ["povray", *files, *options, *(["+BM2"] if self.bsp else [])]
 
     def environment(self, _folder: Path) -> dict[str, str]:

@@ -44,8 +44,8 @@ class Program(Protocol):
         """Write the scene's files for it, unless they are there."""
         ...
 
-    def command(self, scene: Scene, folder: Path, threads: int) -> list[str]:
-        """Give the command that renders the files in the folder."""
+    def command(self, scene: Scene, threads: int) -> list[str]:
+        """Give the command that renders the files when it is started beside them."""
         ...
 
     def environment(self, folder: Path) -> dict[str, str]:

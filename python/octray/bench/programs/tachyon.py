@@ -44,12 +44,12 @@ class Tachyon:
             with path.open("w", encoding="ascii") as file:
                 tachyon.write(scene, file)
 
-    def command(self, scene: Scene, folder: Path, threads: int) -> list[str]:
+    def command(self, scene: Scene, threads: int) -> list[str]:
         """Give the command, at best quality."""
         options = f"+V -fullshade -numthreads {threads} -format PPM".split()
         return [
-            *("tachyon", str(folder / f"{scene.name}.dat"), *options),
-            *("-o", str(folder / "tachyon.ppm")),
+            *("tachyon", f"{scene.name}.dat", *options),
+            *("-o", "tachyon.ppm"),
         ]
 
     def environment(self, folder: Path) -> dict[str, str]:

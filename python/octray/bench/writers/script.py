@@ -8,7 +8,6 @@ from octray.bench.scene import GENERATIONS
 from octray.bench.writers import ply
 
 if TYPE_CHECKING:
-    from pathlib import Path
     from typing import TextIO
 
     from octray.bench.scene import Look, Scene
@@ -18,6 +17,7 @@ _BEGIN = '''\
 import json
 import sys
 import time
+from pathlib import Path
 
 start = time.perf_counter()
 import octray
@@ -49,8 +49,8 @@ print(json.dumps({{"phases": phases, "rays": image.report["rays"]}}))
 """
 
 
-def write(scene: Scene, file: TextIO, folder: Path) -> None:
-    """Write the script; its meshes are the files that are written for Mitsuba."""
+def write(scene: Scene, file: TextIO) -> None:
+    """Write the script; its meshes are the files beside it that are written for Mitsuba."""
     if scene.spheres or scene.solids:
         raise ValueError(f"{scene.name} has more than a floor and meshes")
     file.write(
@@ -66,16 +66,17 @@ def write(scene: Scene, file: TextIO, folder: Path) -> None:
         )
     )
     if scene.floor is not None:
-        _add(file, (scene.floor.corners, [(0, 1, 2), (0, 2, 3)]), scene.floor.look)
+        _add(file, repr((scene.floor.corners, [(0, 1, 2), (0, 2, 3)])), scene.floor.look)
     for number, mesh in enumerate(scene.meshes):
-        _add(file, str(folder / ply.name(scene.name, number)), mesh.look)
+        path = f"Path(__file__).with_name({ply.name(scene.name, number)!r})"
+        _add(file, path, mesh.look)
     file.write(_END.format(size=scene.size, generations=GENERATIONS))
 
 
-def _add(file: TextIO, mesh: object, look: Look) -> None:
-    """Write the call that adds a mesh, as a path or as arrays."""
+def _add(file: TextIO, mesh: str, look: Look) -> None:
+    """Write the call that adds a mesh, an expression for a path or for arrays."""
     material = (
         f"octray.Material({look.color}, name={look.name!r}, ambient=0, diffuse={look.diffuse!r},"
         f" reflection={look.mirror!r})"
     )
-    file.write(f"scene.add_mesh({mesh!r}, material={material}, solid=False)\n")
+    file.write(f"scene.add_mesh({mesh}, material={material}, solid=False)\n")

@@ -8,29 +8,42 @@
 //!
 //! | surface | shells |
 //! |---|---|
-//! | box, half-space, polyhedron, prism of straight edges, mesh, caps | the boundary polygons themselves, both shells in one |
+//! | box, half-space, polyhedron, mesh, caps, straight sides of prisms, facets of lathes that turn in steps | the polygons themselves, both shells in one |
 //! | sphere, cylinder, cone | triangles with corners on the surface, and the same ones scaled outwards |
 //! | torus, also the outer shape of a spindle | nets on tubes of two radii, by a bound of the second derivatives |
-//! | quadrics, polynomials, superellipsoids, curved prisms, lathes | both sides of a layer of boxes that the boundary may cross |
+//! | curved sides of prisms | the chords of pieces of the curves, and the same moved as far as the curve is high over its chord |
+//! | lathe, quadric, superellipsoid | such chords and heights of the outline, turned from facet to facet and as much wider as the turn is than its chord |
+//! | polynomial of degree 3 and more | both sides of a layer of boxes that the boundary may cross: it has no parametrisation |
+//!
+//! Quadrics that are ellipsoids, cylinders or frusta of cones are those primitives under an affine map; the
+//! others have no end, and are cut off where nothing is looked at. Where there would be too many patches, neighbouring
+//! edges of an outline share one, and pieces stay larger.
 //!
 //! All of it is made in the primitive's own frame: hulls survive any affine map.
 
+mod band;
+mod curved;
 mod flat;
 mod layer;
 mod patch;
+mod plane_curve;
+mod refine;
 mod round;
+mod strokes;
+mod swept;
 #[cfg(test)]
 mod tests;
+mod trapezoids;
 
-use std::cmp::Ordering;
-use std::collections::BinaryHeap;
 use std::sync::Arc;
 
 use octray_math::{Aabb, DAffine3, DVec3};
 
 use crate::Primitive;
-use crate::profile::Formula;
+use crate::boundary::Boundary;
 use crate::surface::Canonical;
+use refine::refined;
+use swept::Aim;
 
 pub use patch::{ShellPatch, StepCounts};
 
@@ -69,7 +82,7 @@ fn region(primitive: &Primitive, scene_from_local: &DAffine3, within: &Aabb) -> 
 /// The shells of a primitive's boundary in `within`, where what has no end is cut off.
 ///
 /// `chord_error` is the distance of the shells to aim at, in the scene. There are never more than
-/// `limit` patches where fewer will do (a mesh has as many as it has triangles): then
+/// `limit` patches where fewer will do (a mesh or polyhedron has as many as it has triangles): then
 /// [`Shells::chord_error`] says how coarse they became.
 #[must_use]
 pub fn shells(
@@ -94,15 +107,7 @@ pub fn shells(
             chord_error: 0.0,
         };
     }
-    let layered = |formula: &Formula, narrow: &dyn Fn(&Formula, &Aabb) -> Option<Formula>| {
-        let m = scene_from_local.matrix3;
-        let scale = DVec3::new(m.x_axis.length(), m.y_axis.length(), m.z_axis.length());
-        let most = (limit / 2).max(1);
-        let cells = layer::boxes(&region, scale, chord_error, most, formula, narrow);
-        let thickness = cells.first().map_or(0.0, |cell| cell.diagonal());
-        (cells.iter().flat_map(layer::prisms).collect(), thickness)
-    };
-    let one = |canonical| layered(&Formula::inside(0), &layer::crosses(canonical));
+    let aims = Aim { error: aim, limit };
     let ends = |z: &[f64; 2]| [z[0].max(region.min.z), z[1].min(region.max.z)];
     let (patches, error): (Vec<ShellPatch>, f64) = match primitive {
         Primitive::Sphere { radius } => {
@@ -123,13 +128,17 @@ pub fn shells(
             let patches = patches.iter().map(|p| p.transformed(&scaled));
             (patches.collect(), error * major)
         }
-        Primitive::Quadric(form) => one(Canonical::Quadric(*form)),
+        Primitive::Quadric(form) => curved::quadric(*form, &region, aims),
         Primitive::Polynomial { polynomial, .. } => {
-            one(Canonical::Polynomial(Arc::clone(polynomial)))
+            let m = scene_from_local.matrix3;
+            let scale = DVec3::new(m.x_axis.length(), m.y_axis.length(), m.z_axis.length());
+            let canonical = Canonical::Polynomial(Arc::clone(polynomial));
+            let cells = layer::boxes(&region, scale, chord_error, (limit / 2).max(1), canonical);
+            let thickness = cells.first().map_or(0.0, Aabb::diagonal);
+            (cells.iter().flat_map(layer::prisms).collect(), thickness)
         }
         Primitive::Superellipsoid { exponents } => {
-            let exponents = *exponents;
-            one(Canonical::Superellipsoid { exponents })
+            curved::superellipsoid(*exponents, &region, aims)
         }
         Primitive::HalfSpace { normal, offset } => {
             let (center, radius) = (region.center(), 0.5 * region.diagonal());
@@ -137,12 +146,19 @@ pub fn shells(
         }
         Primitive::Convex(polyhedron) => (flat::convex(polyhedron), 0.0),
         Primitive::Composite(composite) => {
-            // What is smaller than the error needs no more than its box.
-            let flat = composite.flat().filter(|_| region.diagonal() > aim);
-            let triangles = flat.and_then(|flat| flat.triangles(limit));
-            match triangles {
-                Some(t) => (t.into_iter().map(ShellPatch::flat).collect(), 0.0),
-                None => layered(composite.formula(), &layer::composite_crosses(composite)),
+            let bounds = composite.bounds();
+            let size = bounds.diagonal();
+            match composite.boundary() {
+                // What is smaller than the error needs no more than its box.
+                Boundary::Triangles(_) if size <= aim => (layer::prisms(&bounds).to_vec(), size),
+                Boundary::Triangles(triangles) => (
+                    triangles.iter().copied().map(ShellPatch::flat).collect(),
+                    0.0,
+                ),
+                Boundary::Prism { pieces, z, scale } => {
+                    swept::prism(pieces, *z, *scale, size, aims)
+                }
+                Boundary::Lathe { pieces, turning } => swept::lathe(pieces, *turning, size, aims),
             }
         }
         Primitive::Mesh(mesh) => {
@@ -161,35 +177,6 @@ pub fn shells(
     }
 }
 
-/// A patch by the size of its box; equal ones by age.
-struct BySize {
-    size: f64,
-    age: usize,
-    patch: ShellPatch,
-}
-
-impl Ord for BySize {
-    fn cmp(&self, other: &Self) -> Ordering {
-        self.size
-            .total_cmp(&other.size)
-            .then(other.age.cmp(&self.age))
-    }
-}
-
-impl PartialOrd for BySize {
-    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
-        Some(self.cmp(other))
-    }
-}
-
-impl PartialEq for BySize {
-    fn eq(&self, other: &Self) -> bool {
-        self.cmp(other) == Ordering::Equal
-    }
-}
-
-impl Eq for BySize {}
-
 /// The cover of section 6.1: small boxes that together hold the boundary in `within`, none longer than
 /// `size` unless there would be more than `limit` of them.
 #[must_use]
@@ -201,22 +188,11 @@ pub fn cover(
     limit: usize,
 ) -> Vec<Aabb> {
     let shells = shells(primitive, scene_from_local, within, 0.25 * size, limit);
-    let mut age = 0;
-    let mut aged = |patch: ShellPatch| {
-        age += 1;
-        let size = patch.bounds().size().max_element();
-        BySize { size, age, patch }
-    };
-    // The longest is cut first.
-    let mut waiting: BinaryHeap<BySize> = shells.patches.into_iter().map(&mut aged).collect();
-    while waiting.len() < limit && waiting.peek().is_some_and(|longest| longest.size > size) {
-        let Some(longest) = waiting.pop() else { break };
-        waiting.extend(longest.patch.halves().map(&mut aged));
-    }
-    let mut kept = waiting.into_vec();
-    kept.sort_by_key(|entry| entry.age);
-    kept.iter()
-        .map(|entry| entry.patch.bounds())
+    let length = |patch: &ShellPatch| patch.bounds().size().max_element();
+    let pieces = refined(shells.patches, length, size, limit, ShellPatch::halves);
+    pieces
+        .iter()
+        .map(ShellPatch::bounds)
         .filter(|bounds| bounds.overlaps(within))
         .collect()
 }

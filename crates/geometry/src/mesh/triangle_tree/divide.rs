@@ -3,7 +3,7 @@
 use octray_math::{Aabb, DVec3};
 use octray_tree::wide_tree::{Coordinates, Items};
 
-/// Triangles that a tree is built over.
+/// Triangles as they are: corners as indices into positions.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Triangles<'a> {
     pub(super) positions: &'a [DVec3],
@@ -29,8 +29,10 @@ const MARGIN: f64 = 1.0 / (1u64 << 46) as f64;
 
 impl Triangles<'_> {
     #[inline]
-    fn corners(&self, triangle: u32) -> [DVec3; 3] {
-        self.triangles[triangle as usize].map(|i| self.positions[i as usize])
+    pub(super) fn corners(&self, triangle: u32) -> [DVec3; 3] {
+        let [a, b, c] = self.triangles[triangle as usize];
+        let p = self.positions;
+        [p[a as usize], p[b as usize], p[c as usize]]
     }
 }
 

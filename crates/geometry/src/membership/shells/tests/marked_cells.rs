@@ -1,16 +1,14 @@
 //! How many cells do shells mark in vain?
 
-use std::cell::Cell;
 use std::collections::BTreeSet;
 
 use octray_math::{Aabb, DVec3};
 
 use super::{Draw, boundary_points, placed, primitives, seen};
 use crate::csg::{Lowering, reduce};
-use crate::membership::shells::{ShellPatch, StepCounts, layer, shells};
-use crate::profile::Formula;
+use crate::membership::shells::{ShellPatch, StepCounts, shells};
 use crate::surface::Side;
-use crate::{FaceId, Primitive, SceneFrame, Solid};
+use crate::{FaceId, SceneFrame, Solid};
 
 const SIDE: u32 = 32;
 
@@ -81,49 +79,21 @@ fn few_cells_are_marked_in_vain() {
         let [analytic, marked, hit] = marked_cells(&solid);
         println!("{shape:16} {analytic:8} {marked:8} {hit:8}");
         let most = match shape {
-            // As they are; the formula of a composite may even leave more undecided.
-            "box" | "half-space" | "pyramid" | "staircase" | "gear" => 1.0,
+            // Plane.
+            "box" | "half-space" | "pyramid" | "staircase" | "gear" | "pentagram"
+            | "turn in steps" => 1.0,
+            // The formula of a composite leaves more undecided, where its parts touch inside of it.
+            "prism" | "lathe" | "vase" | "part of a turn" => 0.8,
             // Thinner than the chord error across.
             "long cylinder" | "thin torus" => 2.0,
-            // Layers of boxes.
-            "saddle" | "prism" | "lathe" | "quartic" | "superellipsoid" => 1.8,
-            _ => 1.25,
+            // A layer of boxes.
+            "quartic" => 1.4,
+            "endless cylinder" => 1.25,
+            _ => 1.12,
         };
         assert!(
             marked as f64 <= most * analytic as f64,
             "{shape}: {marked}, analytic {analytic}"
         );
-    }
-}
-
-/// In a layer of boxes about a prism of 2,000 sides, most are decided before the boxes are small.
-#[test]
-#[expect(clippy::print_stdout, reason = "figures")]
-fn boxes_ask_only_what_was_open_around_them() {
-    let sides = 2000;
-    let (Primitive::Composite(composite), _) = placed(&super::gear(sides / 4)) else {
-        panic!("a prism");
-    };
-    let (asked, boxes) = (Cell::new(0), Cell::new(0));
-    let narrow = layer::composite_crosses(&composite);
-    let counted = |open: &Formula, cell: &Aabb| {
-        asked.set(asked.get() + names(open));
-        boxes.set(boxes.get() + 1);
-        narrow(open, cell)
-    };
-    let bounds = composite.bounds();
-    let formula = composite.formula();
-    let found = layer::boxes(&bounds, DVec3::ONE, 0.1, 1 << 14, formula, counted);
-    let share = asked.get() as f64 / (boxes.get() * sides) as f64;
-    println!("{share} of all sides were asked per box of {}", boxes.get());
-    assert!(found.len() > 1000 && share < 0.2, "{} {share}", found.len());
-}
-
-/// How many sides a formula names.
-fn names(formula: &Formula) -> usize {
-    match formula {
-        Formula::Constant(_) => 0,
-        Formula::Side { .. } => 1,
-        Formula::All(parts) | Formula::Any(parts) => parts.iter().map(names).sum(),
     }
 }
