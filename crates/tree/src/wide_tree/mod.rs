@@ -1,17 +1,21 @@
 //! Eight boxes at a time: octree topology with tight bounds.
 //!
-//! The tree is generic over what it holds: it sees a box per item, and names items by their index.
-//! Boxes do the culling. Items are halved again and again, in Morton order at the planes of an
-//! octree's cells ([`Quality::Fast`]) or at the planes where rays are expected to pay least
-//! ([`Quality::Full`]); then the nodes of eight are made of the halves that cost least. Every item
-//! stands in exactly one leaf.
+//! The tree is generic over what it holds ([`Items`]): it sees boxes, and names items by their
+//! index. Boxes do the culling. Items are halved again and again, in Morton order at the planes of
+//! an octree's cells ([`Quality::Fast`]) or at the planes where rays are expected to pay least
+//! ([`Quality::Full`]); then the nodes of eight are made of the halves that cost least. With
+//! [`Quality::Full`] large items may be cut in two, so that one stands in several leaves, each time
+//! within a box around a part of it. Boxes alone (`[Aabb]`) are never cut: they stand in one leaf.
 //!
 //! Bounds are kept in `f32`, relative to the tree's centre, scaled by a power of two to `[-1, 1]`
 //! and rounded outwards. They only rule out; the visitor decides in `f64`. So a search gives the
 //! same answer as trying every item, bit for bit, if the visitor does its part: the point that it
-//! reports for an item must lie in the item's box, up to `2^-43` times the largest coordinate of a
-//! corner of the tree's bounds relative to the ray's origin. (Bounds of items whose parameters are
-//! less accurate must be inflated before the tree is built.)
+//! reports for an item must lie at a point of the item itself (for boxes, in the box), up to `2^-43`
+//! times the largest coordinate of a corner of the tree's bounds relative to the ray's origin. Every
+//! point of an item lies in the box of one of its leaves at least, so the leaf is opened. (Bounds of
+//! items whose parameters are less accurate must be inflated before the tree is built.) The reported
+//! point of a triangle is a mean of its corners with the weights reported, so it is such a point
+//! however thin the triangle and however flat the line runs over it.
 
 mod beam;
 mod build;
@@ -51,6 +55,9 @@ pub use walk::{LeafVisitor, Pending, WalkCost};
 const MAX_DEPTH: u32 = 73;
 /// How many items a thread looks at in one go.
 const SHARE: usize = 1 << 12;
+/// So few items are not divided: finding out how is most of the work, and gains little.
+const UNDIVIDED_FAST: u32 = 4;
+const UNDIVIDED_FULL: u32 = 2;
 /// The most items a leaf may hold.
 const LARGEST_LEAF: u32 = 8;
 
@@ -247,8 +254,14 @@ impl WideTree {
                 division = Some(how);
             }
         }
+        let leaf_size = config.leaf_size.clamp(1, LARGEST_LEAF);
+        let undivided = match config.quality {
+            Quality::Fast => UNDIVIDED_FAST,
+            Quality::Full => UNDIVIDED_FULL,
+        };
         let plan = Plan {
-            leaf_size: config.leaf_size.clamp(1, LARGEST_LEAF),
+            leaf_size,
+            undivided: leaf_size.min(undivided) as usize,
             division,
             // There is a second copy of nodes and items at the end, but no references any more.
             bytes: (config.memory_limit - preparing).min(config.memory_limit / 2),
@@ -280,21 +293,27 @@ impl WideTree {
 
     /// A box around all items, and how many of them are not empty.
     fn measure<I: Items + ?Sized>(items: &I) -> Result<(Aabb, usize), WideTreeError> {
-        let unbounded = |item: &u32| !items.bounds(*item).is_bounded();
-        let indices = (0..items.count() as u32)
-            .into_par_iter()
-            .with_min_len(SHARE);
-        if let Some(item) = indices.clone().find_first(unbounded) {
-            return Err(WideTreeError::Unbounded(item as usize));
+        let nothing = || (Aabb::EMPTY, 0, None::<u32>);
+        let indices = (0..items.count() as u32).into_par_iter();
+        let (whole, met, unbounded) = indices
+            .with_min_len(SHARE)
+            .fold(nothing, |(whole, met, unbounded), item| {
+                let bounds = items.bounds(item);
+                if !bounds.is_bounded() {
+                    (whole, met, unbounded.or(Some(item)))
+                } else if bounds.is_empty() {
+                    (whole, met, unbounded)
+                } else {
+                    (whole.union(bounds), met + 1, unbounded)
+                }
+            })
+            .reduce(nothing, |(a, m, first), (b, n, second)| {
+                (a.union(b), m + n, first.or(second))
+            });
+        match unbounded {
+            Some(item) => Err(WideTreeError::Unbounded(item as usize)),
+            None => Ok((whole, met)),
         }
-        Ok(indices
-            .map(|item| items.bounds(item))
-            .filter(|bounds| !bounds.is_empty())
-            .fold(
-                || (Aabb::EMPTY, 0),
-                |(whole, count), bounds| (whole.union(bounds), count + 1),
-            )
-            .reduce(|| (Aabb::EMPTY, 0), |(a, m), (b, n)| (a.union(b), m + n)))
     }
 
     /// References to the items that are not empty; `met` is how many those are.

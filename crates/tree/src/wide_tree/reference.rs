@@ -45,6 +45,7 @@ impl PaddedBox {
     };
 
     /// Rounded outwards.
+    #[inline]
     pub(super) fn outward(frame: &Frame, bounds: &Aabb) -> Self {
         Self::rounded(
             frame.point(bounds.min).to_array(),
@@ -52,6 +53,7 @@ impl PaddedBox {
         )
     }
 
+    #[inline]
     pub(super) fn rounded([x, y, z]: [f64; 3], [u, v, w]: [f64; 3]) -> Self {
         Self {
             min: [round_down(x), round_down(y), round_down(z), 0.0],
@@ -98,6 +100,7 @@ impl Reference {
     /// Room for one.
     pub(super) const BLANK: Self = Self(PaddedBox::EMPTY);
 
+    #[inline]
     pub(super) fn new(mut bounds: PaddedBox, item: u32) -> Self {
         // Below 2^28 this is the pattern of an ordinary, tiny number: no NaN.
         bounds.min[3] = f32::from_bits(item);

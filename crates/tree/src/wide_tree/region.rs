@@ -6,7 +6,8 @@ use super::{MAX_DEPTH, WideTree, link};
 
 impl WideTree {
     /// Whether `visit` is true of any item whose box overlaps `region` (which may be unbounded);
-    /// stops at the first. Some items whose boxes only come close are shown as well.
+    /// stops at the first. Some items whose boxes only come close are shown as well, and items in
+    /// several leaves perhaps more than once.
     pub fn any_overlapping(&self, region: &Aabb, mut visit: impl FnMut(u32) -> bool) -> bool {
         if self.nodes.is_empty() || region.is_empty() {
             return false;

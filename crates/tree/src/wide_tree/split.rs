@@ -244,11 +244,12 @@ impl<'a> Piece<'a> {
             let binning = Binning::new(&self.extent.centers, bins);
             let filled = Bins::of(self.references(), &binning);
             let plane = filled.best(bins);
+            let whole = self.extent.bounds.half_area() * count as f32;
             if let Some(division) = division
                 && 2 * count <= most
                 && plane.is_none_or(|(plane, _)| filled.overlap(plane, bins) > MUCH)
                 && let Some(cut) = division.best(self.references(), &self.extent.bounds)
-                && plane.is_none_or(|(_, cost)| cut.cost < cost)
+                && cut.cost < plane.map_or(whole, |(_, cost)| cost)
             {
                 let (middle, added) = division.cut(self.slots, count, cut);
                 if middle > 0 && middle < count + added.len() {

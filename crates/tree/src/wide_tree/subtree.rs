@@ -9,7 +9,7 @@ use octray_kernels::Boxes8;
 
 use super::cost::{self, Choice, Costs};
 use super::divide::Division;
-use super::reference::PaddedBox;
+use super::reference::{PaddedBox, Reference};
 use super::split::Piece;
 use super::{WideNode, link};
 
@@ -17,9 +17,11 @@ use super::{WideNode, link};
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Part {
     pub(super) bounds: PaddedBox,
-    /// Of a single reference, its place; of halves, the first of the two parts.
-    index: u32,
+    /// The place of its first item, and how many it has.
+    first: u32,
     count: u32,
+    /// The first of its two halves, 0 if it has none.
+    halves: u32,
     pub(super) choice: Choice,
 }
 
@@ -27,6 +29,8 @@ pub(super) struct Part {
 #[derive(Debug)]
 pub(super) struct Plan<'a> {
     pub(super) leaf_size: u32,
+    /// Not more references than this stay together: not above `leaf_size`.
+    pub(super) undivided: usize,
     /// How large references are cut in two, if they are.
     pub(super) division: Option<Division<'a>>,
     pub(super) bytes: u64,
@@ -60,8 +64,9 @@ struct Arena<'a> {
 impl Part {
     const BLANK: Self = Self {
         bounds: PaddedBox::EMPTY,
-        index: 0,
+        first: 0,
         count: 0,
+        halves: 0,
         choice: Choice::LEAF,
     };
 }
@@ -103,35 +108,40 @@ pub(super) fn build(piece: Piece<'_>, height: u32, plan: &Plan<'_>) -> Branch {
 impl Arena<'_> {
     /// Makes the part of a piece, and all below it.
     fn divide(&mut self, part: usize, piece: Piece<'_>, height: u32) -> Costs {
-        if let [reference] = piece.references() {
-            let bounds = reference.0;
+        let first = self.items.len() as u32;
+        let references = piece.references();
+        if references.len() <= self.plan.undivided {
+            let bounds = references.iter().map(|r| r.0);
+            let bounds = bounds.fold(PaddedBox::EMPTY, |all, b| all.union(&b));
+            let count = references.len() as u32;
+            self.items.extend(references.iter().map(Reference::item));
             self.parts[part] = Part {
                 bounds,
-                index: self.items.len() as u32,
-                count: 1,
-                choice: Choice::LEAF,
+                first,
+                count,
+                ..Part::BLANK
             };
-            self.items.push(reference.item());
-            return cost::leaf(bounds.half_area(), 1);
+            return cost::leaf(bounds.half_area(), count);
         }
         let halves = self.parts.len();
         self.parts.extend([Part::BLANK; 2]);
         let [low, high] = piece.split(largest(height - 1), self.plan.division.as_ref());
-        let first = self.divide(halves, low, height - 1);
-        let second = self.divide(halves + 1, high, height - 1);
+        let low_costs = self.divide(halves, low, height - 1);
+        let high_costs = self.divide(halves + 1, high, height - 1);
         let (low, high) = (&self.parts[halves], &self.parts[halves + 1]);
         let (bounds, count) = (low.bounds.union(&high.bounds), low.count + high.count);
         let (costs, choice) = cost::join(
-            &first,
-            &second,
+            &low_costs,
+            &high_costs,
             bounds.half_area(),
             count,
             self.plan.leaf_size,
         );
         self.parts[part] = Part {
             bounds,
-            index: halves as u32,
+            first,
             count,
+            halves: halves as u32,
             choice,
         };
         costs
@@ -172,13 +182,13 @@ impl Arena<'_> {
     /// Appends the items of a part.
     fn leaf(&self, part: usize, items: &mut Vec<u32>) -> u32 {
         let first = items.len();
-        let mut low = part;
-        // References of a part lie together: its first is that of its first half.
-        while self.parts[low].count > 1 {
-            low = self.parts[low].index as usize;
-        }
-        let place = self.parts[low].index as usize;
-        for &item in &self.items[place..place + self.parts[part].count as usize] {
+        // References of a part lie together.
+        let Part {
+            first: place,
+            count,
+            ..
+        } = self.parts[part];
+        for &item in &self.items[place as usize..][..count as usize] {
             // Two parts of an item are one again.
             if !items[first..].contains(&item) {
                 items.push(item);
@@ -190,19 +200,19 @@ impl Arena<'_> {
     /// What stands in the node of a part.
     fn slots(&self, part: usize) -> Slots {
         let mut slots = Slots::default();
-        let Part { index, choice, .. } = self.parts[part];
-        self.fill(index as usize, choice.to_first(8), &mut slots);
-        self.fill(index as usize + 1, 8 - choice.to_first(8), &mut slots);
+        let Part { halves, choice, .. } = self.parts[part];
+        self.fill(halves as usize, choice.to_first(8), &mut slots);
+        self.fill(halves as usize + 1, 8 - choice.to_first(8), &mut slots);
         slots
     }
 
     /// Puts a part into so many slots at most.
     fn fill(&self, part: usize, count: u32, slots: &mut Slots) {
-        let Part { index, choice, .. } = self.parts[part];
+        let Part { halves, choice, .. } = self.parts[part];
         if choice.divides(count) {
             let first = choice.to_first(count);
-            self.fill(index as usize, first, slots);
-            self.fill(index as usize + 1, count - first, slots);
+            self.fill(halves as usize, first, slots);
+            self.fill(halves as usize + 1, count - first, slots);
         } else {
             slots.push(part);
         }

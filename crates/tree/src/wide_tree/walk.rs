@@ -86,7 +86,8 @@ impl WideTree {
     /// `visit(item, end)` returns the new end of the span: the `t` of what it found if that is
     /// not larger, else `end`. Every item whose box the line meets at or before the final end (or
     /// within rounding of it) is shown, in an order that depends on nothing but tree and ray. Ties
-    /// are the visitor's to resolve: nothing is left out for being only as good as the best.
+    /// are the visitor's to resolve: nothing is left out for being only as good as the best. An item
+    /// that stands in several leaves may be shown more than once, and need be met in one of them.
     pub fn closest(
         &self,
         ray: &Ray,
@@ -118,7 +119,8 @@ impl WideTree {
         .is_break()
     }
 
-    /// Shows `visit` every item whose box the line meets in `span`, and perhaps some others.
+    /// Shows `visit` every item whose box the line meets in `span`, and perhaps some others; items
+    /// in several leaves perhaps more than once.
     pub fn all(&self, ray: &Ray, span: Interval, cost: &mut WalkCost, mut visit: impl FnMut(u32)) {
         let _ = self.each(ray, span, cost, |item, end| {
             visit(item);

@@ -41,6 +41,7 @@ impl Items for Triangles<'_> {
         self.triangles.len()
     }
 
+    #[inline]
     fn bounds(&self, item: u32) -> Aabb {
         Aabb::from_points(self.corners(item))
     }
