@@ -11,7 +11,11 @@ export PIP_DISABLE_PIP_VERSION_CHECK := 1
 BIN := .venv/bin
 RUST_SOURCES := $(shell find crates -name '*.rs' -o -name Cargo.toml) Cargo.toml Cargo.lock
 
+<<<<<<< HEAD
+.PHONY: help demo test test-rust test-python conformance lint setup lab peers peers-speed peers-meshes embree clean toolchain
+=======
 .PHONY: help demo test test-rust test-python conformance lint setup lab bench peers peers-speed embree clean toolchain
+>>>>>>> main
 .DELETE_ON_ERROR:
 
 help: ## Print this list
@@ -57,6 +61,9 @@ peers: .venv-peers/installed ## Run the same scenes through octray and the peers
 
 peers-speed: .venv-peers/installed ## Count the rays per second of octray and raysect
 	@$(PEERS_PYTHON) benches/peers/raysect_rays.py
+
+peers-meshes: .venv-peers/installed ## Time rays from Python onto meshes beside Open3D and trimesh with embreex
+	@$(PEERS_PYTHON) benches/peers/cast_rays.py
 
 # `make embree EMBREE='--mesh building --kind primary --size 256'` takes seconds; `--help` says more.
 embree: toolchain ## Trace meshes beside Embree, ray for ray, where that is installed

@@ -46,6 +46,22 @@ def test_results_keep_the_leading_axes_and_have_their_kinds() -> None:
         assert (blocked.shape, blocked.dtype) == (shape, np.dtype(np.bool_))
 
 
+def test_many_rays_get_the_answers_of_few() -> None:
+    scene = sample_scene()
+    rays = random_rays(40_000).astype(np.float32)
+    few = [rays[start : start + 1000] for start in range(0, len(rays), 1000)]
+    for threads in (1, 3):
+        many = scene.cast_rays(rays, threads=threads)
+        for name in ("t", "object_id", "face_id", "hit", "normal", "position"):
+            parts = [getattr(scene.cast_rays(part), name) for part in few]
+            np.testing.assert_array_equal(getattr(many, name), np.concatenate(parts))
+        parts = [scene.cast_rays(part).to_open3d() for part in few]
+        for key, answers in many.to_open3d().items():
+            np.testing.assert_array_equal(answers, np.concatenate([part[key] for part in parts]))
+        met = scene.test_occlusions(rays, threads=threads)
+        np.testing.assert_array_equal(met, many.hit)
+
+
 def test_float32_and_lists_and_other_memory_orders_are_accepted() -> None:
     scene = sample_scene()
     rays = random_rays(40).astype(np.float32)

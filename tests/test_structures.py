@@ -108,6 +108,41 @@ def test_memory_is_told_by_part_and_the_table_by_what_it_holds() -> None:
     assert memory["wide_trees"] == mesh.stats()["trees"]["wide"]["bytes"]
 
 
+def fan() -> octray.Scene:
+    """Long triangles askew, whose boxes are nearly empty, over a fine grid."""
+    turns = np.linspace(0, 3, 400)
+    tips = np.stack([np.cos(turns), np.sin(turns), np.sin(3 * turns)], axis=1) * 5
+    roots = -tips + np.stack([turns, -turns, turns], axis=1)
+    corners = np.concatenate([roots, tips, tips + 0.05])
+    n = len(turns)
+    scene = octray.Scene()
+    scene.add_mesh((corners, [(i, n + i, 2 * n + i) for i in range(n)]))
+    x, y = (axis.ravel() for axis in np.mgrid[0:30, 0:30] / 3 - 5)
+    grid = np.stack([x, y, np.sin(x + y) - 6], axis=1)
+    cells = [30 * i + j for i in range(29) for j in range(29)]
+    scene.add_mesh((grid, [(c, c + 1, c + 30) for c in cells]))
+    return scene
+
+
+def test_both_qualities_give_the_same_picture_and_full_cuts_long_triangles() -> None:
+    pictures = []
+    qualities: list[Literal["fast", "full"] | None] = ["fast", "full", None]
+    for quality in qualities:
+        scene = fan()
+        scene.prepare(quality=quality)
+        wide = scene.stats()["trees"]["wide"]
+        assert wide["items"] == 400 + 29 * 29
+        extra = wide["references"] - wide["items"]
+        assert extra == 0 if quality == "fast" else 0 < extra <= 0.3 * wide["items"]
+        pictures.append(scene.render(size=SIZE))
+    assert pictures[0].equals(pictures[1])
+    assert pictures[0].equals(pictures[2])
+    brute = fan().render(size=SIZE, accel="brute")
+    assert pictures[0].equals(brute)
+    with pytest.raises(ValueError, match='quality must be "fast" or "full", not "best"'):
+        fan().prepare(quality="best")  # type: ignore[arg-type]
+
+
 CRITERIA: list[dict[str, Any]] = [
     {"tree_objects": 2, "tree_cost": "off", "tree_depth": 7},
     {"tree_cost": 0.5},
@@ -182,7 +217,7 @@ def test_criteria_are_options_of_render_and_query(octray_command: Octray, tmp_pa
         "--tree-share",
         0.9,
     )
-    options += ("--tree-memory", 10, "--lvsi-table", "power-of-two", "--lvsi-load", 2)
+    options += ("--quality", "fast", "--tree-memory", 10, "--lvsi-table", "power-of-two", "--lvsi-load", 2)
     accel = ("--accel", "octree:lvsi")
     size = ("--size", "24x16")
     done = octray_command("render", "a.csg", *size, *accel, *options, "--json", "-v")
@@ -195,6 +230,7 @@ def test_criteria_are_options_of_render_and_query(octray_command: Octray, tmp_pa
     found = octray_command("query", "a.csg", "--rays", "rays.npy", *accel, *options)
     assert json.loads(found.stdout.splitlines()[0])["t"] == 89
     for option, value in (
+        ("--quality", "best"),
         ("--tree-cost", "cheap"),
         ("--tree-cost", "inf"),
         ("--tree-objects", 0),

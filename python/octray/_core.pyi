@@ -8,7 +8,15 @@ import numpy as np
 import numpy.typing as npt
 from typing_extensions import Unpack, disjoint_base
 
-from octray._options import Accel, Integrator, MeshRule, Overlaps, RenderOptions, View
+from octray._options import (
+    Accel,
+    Integrator,
+    MeshRule,
+    Overlaps,
+    Quality,
+    RenderOptions,
+    View,
+)
 from octray.ray import RayIntersector
 
 __all__ = [
@@ -418,6 +426,7 @@ class Scene:
         *,
         accel: Accel = "auto",
         threads: int | None = None,
+        quality: Quality | None = None,
         tree_objects: int | None = None,
         tree_depth: int | None = None,
         tree_cost: float | Literal["off"] | None = None,

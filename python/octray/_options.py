@@ -13,6 +13,8 @@ if TYPE_CHECKING:
 #: ``octree[:ENCODING[:TRAVERSAL[:MEMBERSHIP]]]``, as in ``octree:tree:beam:shells``;
 #: ``octray.methods()`` lists all of them. The answers are the same bits.
 Accel = str
+#: How long the tree over the triangles of meshes may take to build.
+Quality = Literal["fast", "full"]
 MeshRule = Literal["strict", "winding"]
 #: Whose intervals count where solids overlap.
 Overlaps = Literal["regions", "priorities", "objects"]

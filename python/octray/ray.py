@@ -40,7 +40,7 @@ def _vectors(what: str, values: npt.ArrayLike) -> _Floats:
             f"{what} must be an array of real numbers of shape (n, 3),"
             f" not shape {array.shape} of {array.dtype}"
         )
-    return array.astype(np.float64)
+    return array.astype(np.float64, copy=False)
 
 
 def _rays(ray_origins: npt.ArrayLike, ray_directions: npt.ArrayLike) -> _Floats:
@@ -52,6 +52,11 @@ def _rays(ray_origins: npt.ArrayLike, ray_directions: npt.ArrayLike) -> _Floats:
             f" not {len(directions)} and {len(origins)}"
         )
     return np.concatenate([origins, directions], axis=1)
+
+
+def _locations(rays: _Floats, index_ray: _Integers, t: _Floats) -> _Floats:
+    met = rays[index_ray]
+    return met[:, :3] + t[:, None] * met[:, 3:]
 
 
 class RayIntersector:
@@ -95,11 +100,10 @@ class RayIntersector:
         Origins and directions are (n, 3). Returns ``index_tri`` (h,), ``index_ray`` (h,) and, with
         ``return_locations``, ``locations`` (h, 3); at most ``max_hits`` for each ray.
         """
-        index_ray, index_tri, locations = self._hits(
-            _rays(ray_origins, ray_directions), multiple_hits, max_hits
-        )
+        rays = _rays(ray_origins, ray_directions)
+        index_ray, index_tri, t = self._hits(rays, multiple_hits, max_hits)
         if return_locations:
-            return index_tri, index_ray, locations
+            return index_tri, index_ray, _locations(rays, index_ray, t)
         return index_tri, index_ray
 
     def intersects_location(
@@ -109,10 +113,9 @@ class RayIntersector:
         multiple_hits: bool = True,
     ) -> tuple[_Floats, _Integers, _Integers]:
         """Find where rays hit: ``locations`` (h, 3), ``index_ray`` (h,) and ``index_tri`` (h,)."""
-        index_ray, index_tri, locations = self._hits(
-            _rays(ray_origins, ray_directions), multiple_hits, None
-        )
-        return locations, index_ray, index_tri
+        rays = _rays(ray_origins, ray_directions)
+        index_ray, index_tri, t = self._hits(rays, multiple_hits, None)
+        return _locations(rays, index_ray, t), index_ray, index_tri
 
     def intersects_first(
         self, ray_origins: npt.ArrayLike, ray_directions: npt.ArrayLike
@@ -140,6 +143,4 @@ class RayIntersector:
         if max_hits is not None and max_hits < 1:
             raise ValueError(f"max_hits must be at least 1, not {max_hits}")
         limit = max_hits if multiple_hits else 1
-        index_ray, index_tri, t = self._scene._crossings(rays, limit)  # noqa: SLF001
-        met = rays[index_ray]
-        return index_ray, index_tri, met[:, :3] + t[:, None] * met[:, 3:]
+        return self._scene._crossings(rays, limit)  # noqa: SLF001

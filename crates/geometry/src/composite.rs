@@ -3,7 +3,7 @@
 use octray_math::{Aabb, DAffine3, DVec3};
 
 use crate::ShapeError;
-use crate::flat_boundary::FlatBoundary;
+use crate::boundary::FlatBoundary;
 use crate::profile::{Formula, MAX_FORMULA_DEPTH};
 use crate::surface::Canonical;
 

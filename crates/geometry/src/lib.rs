@@ -4,9 +4,9 @@
 //! two sides and no inside. Both are immutable and cheap to clone, and valid by construction:
 //! every constructor refuses what it cannot represent with a [`ShapeError`].
 
+mod boundary;
 mod composite;
 pub mod csg;
-mod flat_boundary;
 mod frame;
 mod identity;
 mod implicit;

@@ -6,8 +6,8 @@
 
 use octray_math::{Aabb, DVec3};
 
+use crate::boundary::FlatBoundary;
 use crate::composite::{Composite, CompositeFace, CompositeKind};
-use crate::flat_boundary::FlatBoundary;
 use crate::polygon::Triangulator;
 use crate::profile::{Formula, MAX_FORMULA_DEPTH};
 use crate::{ShapeError, TriangleMesh};

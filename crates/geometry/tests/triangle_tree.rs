@@ -235,3 +235,104 @@ fn scanned_meshes_where_they_are_at_hand() {
     );
     assert!(hits > 2000, "{hits}");
 }
+
+/// Long thin triangles askew and large ones, which the wide octree cuts in two again and again.
+fn needles() -> TriangleMesh {
+    let mut random = Random::new(77);
+    let mut positions = Vec::new();
+    for i in 0..900 {
+        let start = random.point(1.0);
+        let along = [
+            DVec3::new(1.1, 0.9, 0.6),
+            DVec3::new(0.0, 0.0, 1.5),
+            DVec3::new(-0.8, 0.8, 0.0),
+        ][i % 3];
+        let width = [1e-3, 1e-12, 0.3, 0.0][i % 4];
+        positions.extend([start, start + along, start + random.point(width)]);
+    }
+    // Their corners lie on the planes that halve the tree.
+    for i in 0..60 {
+        let mut at = |k: usize| f64::from((random.below(9) + k) as u32 % 9) / 4.0 - 1.0;
+        let corners = [
+            at(0),
+            at(1),
+            at(2),
+            at(3),
+            at(4),
+            at(5),
+            at(6),
+            at(7),
+            at(8),
+        ];
+        let corner = |k: usize| DVec3::new(corners[k], corners[k + 1], corners[k + 2]);
+        positions.extend([
+            corner(0),
+            corner(3),
+            corner(6) + DVec3::splat(f64::from(i % 2)),
+        ]);
+    }
+    let triangles = (0..positions.len() as u32 / 3).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]);
+    TriangleMesh::new(positions, triangles.collect()).unwrap()
+}
+
+#[test]
+fn triangles_that_are_cut_in_two_are_found_where_they_are_crossed() {
+    let mesh = needles();
+    let mut brute = searched(&mesh, 1, &TriangleSearch::All);
+    let mut wide = searched(&mesh, 1, &TriangleSearch::Wide(WideTreeConfig::default()));
+    let stats = wide.0.tree_stats().unwrap();
+    assert!(stats.references > stats.items, "{stats:?}");
+    let mut random = Random::new(78);
+    let mut hits = 0;
+    for i in 0..6000 * cases() {
+        let corners = mesh.corners(random.below(mesh.triangles().len()) as u32);
+        let [u, v] = [random.between(0.0, 1.0), random.between(0.0, 1.0)];
+        let on = match i % 4 {
+            0 => corners[i / 4 % 3],
+            1 => corners[0] + (corners[1] - corners[0]) * u,
+            2 => {
+                corners[0]
+                    + (corners[1] - corners[0]) * u
+                    + (corners[2] - corners[0]) * v * (1.0 - u)
+            }
+            // Where planes may have cut.
+            _ => ((corners[0] + (corners[1] - corners[0]) * u) * 16.0).round() / 16.0,
+        };
+        let direction = match i % 5 {
+            0 => DVec3::AXES[random.below(3)],
+            // Along the triangle, so that where it is crossed is badly known.
+            1 => corners[1] - corners[0] + random.point(1e-9),
+            2 => corners[1] - corners[0],
+            _ => random.point(1.0),
+        };
+        let direction = if direction == DVec3::ZERO {
+            DVec3::X
+        } else {
+            direction
+        };
+        let ray = Ray::new(on - direction * [0.0, 1.0, 1e3][i % 3], direction);
+        let all = brute.everything(&ray, Interval::ALL);
+        let middle = all
+            .get(i % all.len().max(1))
+            .map_or(0.5, |x| f64::from_bits(x.1));
+        for span in [
+            Interval::ALL,
+            Interval::new(f64::NEG_INFINITY, middle),
+            Interval::new(middle, f64::INFINITY),
+        ] {
+            assert_eq!(
+                wide.everything(&ray, span),
+                brute.everything(&ray, span),
+                "{ray:?}"
+            );
+            assert_eq!(
+                wide.nearest(&ray, span),
+                brute.nearest(&ray, span),
+                "{ray:?}"
+            );
+            assert_eq!(wide.any(&ray, span), brute.any(&ray, span), "{ray:?}");
+        }
+        hits += all.len();
+    }
+    assert!(hits > 3000 * cases(), "{hits}");
+}

@@ -4,10 +4,15 @@
 //! documentation. Every kernel has a scalar twin with the same operations in the same order, so
 //! both give the same bits: no fused multiply-add, no reciprocal estimates.
 
+pub mod beam;
+mod lane;
 pub mod slab;
+pub mod triangles;
 
+pub use beam::{BeamFrame, BeamTest, BeamTriangles, Group, RayCandidates};
 pub use fearless_simd::{Level, Simd, dispatch};
 pub use slab::{BoxTest, Boxes8, Scalar, SlabRay, Vector};
+pub use triangles::{Candidates, TriangleLine, TriangleTest};
 
 /// How kernels run.
 #[derive(Clone, Copy, Debug)]
@@ -25,3 +30,8 @@ impl Lanes {
         Self::Vector(Level::new())
     }
 }
+
+/// All kernels, run in one way.
+pub trait Kernels: BoxTest + TriangleTest + BeamTest {}
+
+impl<T: BoxTest + TriangleTest + BeamTest> Kernels for T {}

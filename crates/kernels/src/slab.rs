@@ -111,7 +111,9 @@ impl SlabRay {
         };
         for axis in 0..3 {
             let (o, d) = (origin[axis], direction[axis]);
-            let (above, below) = (round_up(o + slack), round_down(o - slack));
+            // Two ulps beyond: the conversion rounds by half of one, either way.
+            let outwards = slack + o.abs() * (4.0 * f64::from(f32::EPSILON / 4.0));
+            let (above, below) = ((o + outwards) as f32, (o - outwards) as f32);
             let inverse = (1.0 / d.abs()).min(STEEPEST) as f32;
             if d < 0.0 {
                 (ray.near_plane[axis], ray.far_plane[axis]) = (axis + 3, axis);

@@ -52,8 +52,8 @@ impl Shape {
     }
 }
 
-/// `object` as a C-ordered array; a wrong shape or kind is a `ValueError` that says what was
-/// expected and what came. An empty list has no shape of its own and counts as no rows.
+/// `object` as an array; a wrong shape or kind is a `ValueError` that says what was expected and what
+/// came. An empty list has no shape of its own and counts as no rows.
 fn checked<'py>(
     what: &str,
     object: &Bound<'py, PyAny>,
@@ -87,20 +87,51 @@ fn checked<'py>(
     if !good {
         return Err(expected(format!("dtype {dtype}")));
     }
-    let array = if shape == [0] {
-        array.call_method1("reshape", ((0, wanted.width),))?
+    if shape == [0] {
+        let array = array.call_method1("reshape", ((0, wanted.width),))?;
+        Ok(array.cast_into::<PyUntypedArray>()?)
     } else if wanted.fits(&shape) {
-        array
+        Ok(array.cast_into::<PyUntypedArray>()?)
     } else {
-        return Err(expected(format!("shape {}", shape_text(&shape))));
-    };
-    let target = match kind {
-        Kind::Real => "float64",
-        Kind::Integer => "int64",
-    };
+        Err(expected(format!("shape {}", shape_text(&shape))))
+    }
+}
+
+/// The same numbers in C order and of the type of this name; what is so already is not copied.
+fn converted<'py>(
+    array: &Bound<'py, PyUntypedArray>,
+    target: &str,
+) -> PyResult<Bound<'py, PyUntypedArray>> {
+    let py = array.py();
     let options = [("dtype", target), ("order", "C")].into_py_dict(py)?;
+    let numpy = py.import("numpy")?;
     let array = numpy.call_method("asarray", (array,), Some(&options))?;
     Ok(array.cast_into::<PyUntypedArray>()?)
+}
+
+/// Real numbers in C order.
+pub(crate) enum Reals<'py> {
+    /// float32, which nobody has widened yet.
+    Single(PyReadonlyArrayDyn<'py, f32>),
+    /// float64.
+    Double(PyReadonlyArrayDyn<'py, f64>),
+}
+
+/// Real numbers: float32 as they are, others as float64.
+pub(crate) fn reals<'py>(
+    what: &str,
+    object: &Bound<'py, PyAny>,
+    shape: Shape,
+) -> PyResult<Reals<'py>> {
+    let array = checked(what, object, Kind::Real, shape)?;
+    if array.is_c_contiguous()
+        && let Ok(single) = array.cast::<PyArrayDyn<f32>>()
+    {
+        return Ok(Reals::Single(single.try_readonly()?));
+    }
+    let array = converted(&array, "float64")?;
+    let double = array.cast::<PyArrayDyn<f64>>()?.try_readonly()?;
+    Ok(Reals::Double(double))
 }
 
 /// Real numbers as float64.
@@ -109,7 +140,7 @@ pub(crate) fn real_array<'py>(
     object: &Bound<'py, PyAny>,
     shape: Shape,
 ) -> PyResult<PyReadonlyArrayDyn<'py, f64>> {
-    let array = checked(what, object, Kind::Real, shape)?;
+    let array = converted(&checked(what, object, Kind::Real, shape)?, "float64")?;
     Ok(array.cast::<PyArrayDyn<f64>>()?.try_readonly()?)
 }
 
@@ -119,6 +150,6 @@ pub(crate) fn integer_array<'py>(
     object: &Bound<'py, PyAny>,
     shape: Shape,
 ) -> PyResult<PyReadonlyArrayDyn<'py, i64>> {
-    let array = checked(what, object, Kind::Integer, shape)?;
+    let array = converted(&checked(what, object, Kind::Integer, shape)?, "int64")?;
     Ok(array.cast::<PyArrayDyn<i64>>()?.try_readonly()?)
 }

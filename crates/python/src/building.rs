@@ -1,7 +1,7 @@
 //! How to build, from the keywords of `Scene.prepare`.
 
 use octray::math::MAX_DEPTH;
-use octray::world::{LvsiTable, TableSize, WorldConfig};
+use octray::world::{LvsiTable, Quality, TableSize, WorldConfig};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
@@ -10,6 +10,7 @@ use crate::world::method_called;
 /// What may be said about building; `None` leaves a default.
 #[derive(Debug, Default)]
 pub(crate) struct Building<'a, 'py> {
+    pub(crate) quality: Option<&'a str>,
     pub(crate) objects: Option<u32>,
     pub(crate) depth: Option<u32>,
     /// A number or `"off"`.
@@ -31,6 +32,17 @@ impl Building<'_, '_> {
             method: method_called(accel)?,
             ..WorldConfig::default()
         };
+        if let Some(quality) = self.quality {
+            config.triangles.quality = match quality {
+                "fast" => Quality::Fast,
+                "full" => Quality::Full,
+                other => {
+                    return refused(format!(
+                        "quality must be \"fast\" or \"full\", not {other:?}"
+                    ));
+                }
+            };
+        }
         let criteria = &mut config.criteria;
         if let Some(objects) = self.objects {
             criteria.max_parts = objects;

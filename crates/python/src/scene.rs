@@ -295,6 +295,8 @@ impl Scene {
     /// Builds the trees now rather than with the first picture or query, by other criteria if these
     /// are given. A cell is divided if all of them agree; the answers are the same by any.
     ///
+    /// `quality`: "fast" builds the tree over the triangles of meshes in less time, "full" (the
+    /// default) one in which rays find them in less.
     /// `tree_objects`: a cell of at most so many surfaces is not divided. `tree_depth`: the deepest
     /// level, 0 to 21. `tree_cost`: what entering a cell costs in planes intersected with a ray, as a
     /// cell is divided where the expected cost of rays falls; `"off"` divides whatever it costs.
@@ -304,8 +306,8 @@ impl Scene {
     /// (rows used for each row of the table) say how large a hash table is. `cells`: the path of a
     /// list of cells (`dump_cells`) along which the octree over solids is built.
     #[pyo3(signature = (
-        *, accel = "auto", threads = None, tree_objects = None, tree_depth = None, tree_cost = None,
-        tree_share = None, tree_memory = None, lvsi_table = None, lvsi_load = None,
+        *, accel = "auto", threads = None, quality = None, tree_objects = None, tree_depth = None,
+        tree_cost = None, tree_share = None, tree_memory = None, lvsi_table = None, lvsi_load = None,
         cells = None
     ))]
     #[expect(clippy::too_many_arguments, reason = "all by keyword")]
@@ -313,6 +315,7 @@ impl Scene {
         slf: &Bound<'_, Self>,
         accel: &str,
         threads: Option<usize>,
+        quality: Option<&str>,
         tree_objects: Option<u32>,
         tree_depth: Option<u32>,
         tree_cost: Option<&Bound<'_, PyAny>>,
@@ -323,6 +326,7 @@ impl Scene {
         cells: Option<PathBuf>,
     ) -> PyResult<()> {
         let building = Building {
+            quality,
             objects: tree_objects,
             depth: tree_depth,
             cost: tree_cost,

@@ -87,6 +87,7 @@ fn cells<'py>(
 fn wide<'py>(py: Python<'py>, stats: &WideTreeStats) -> PyResult<Bound<'py, PyDict>> {
     let dict = PyDict::new(py);
     dict.set_item("items", stats.items)?;
+    dict.set_item("references", stats.references)?;
     dict.set_item("nodes", stats.nodes)?;
     dict.set_item("leaves", stats.leaves)?;
     dict.set_item("depth", stats.depth)?;

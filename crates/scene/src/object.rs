@@ -62,7 +62,11 @@ impl Object {
 
     /// Copies of a prototype with the usual settings.
     #[must_use]
-    pub fn instances(name: impl Into<Arc<str>>, instances: Instances, material: MaterialId) -> Self {
+    pub fn instances(
+        name: impl Into<Arc<str>>,
+        instances: Instances,
+        material: MaterialId,
+    ) -> Self {
         Self::new(name, Shape::Instances(instances), material)
     }
 

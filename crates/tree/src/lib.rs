@@ -21,4 +21,7 @@ pub use encoding::{LvsiStats, LvsiStore, LvsiTable, TableSize};
 pub use grid::Grid;
 pub use partition::{Division, Encoding, Leaf, Partition, PartitionStats, Traversal, WalkMemory};
 pub use tally::Tally;
-pub use wide_tree::{Quality, WalkCost, WideTree, WideTreeConfig, WideTreeError, WideTreeStats};
+pub use wide_tree::{
+    Coordinates, Items, LeafVisitor, LocalLine, Pending, Quality, WalkCost, WideTree,
+    WideTreeConfig, WideTreeError, WideTreeStats,
+};

@@ -101,30 +101,36 @@ impl Batch<'_> {
     /// See [`BatchError`].
     pub fn closest(&self, rays: &[RayRow]) -> Result<Vec<Hit>, BatchError> {
         if self.world.has_beams() {
-            return self.in_beams(rays, f64::INFINITY, |queries, hits| {
+            return self.in_beams(rays, f64::INFINITY, Hit::MISS, |queries, hits| {
                 self.world.closest(queries, hits, &mut Counters::default());
             });
         }
-        self.each(rays.len(), |ray, scratch| {
+        self.each(rays.len(), Hit::MISS, |ray, scratch| {
             let query = whole_query(&rays[ray]);
             self.world
                 .closest_one(&query, scratch, &mut Counters::default())
         })
     }
 
-    /// Position and unit normal of the surface that each ray meets, as [`World::interact`] has them;
-    /// both NaN for a miss.
+    /// Position of the surface that each ray meets, as [`World::interact`] has it; NaN for a miss.
     ///
     /// # Errors
     /// See [`BatchError`].
-    pub fn surfaces(&self, rays: &[RayRow], hits: &[Hit]) -> Result<Vec<[DVec3; 2]>, BatchError> {
-        self.each(rays.len(), |ray, _| {
-            let hit = &hits[ray];
-            if hit.is_miss() {
-                return [DVec3::NAN; 2];
-            }
-            let surface = self.world.interact(&whole_query(&rays[ray]), hit);
-            [surface.position, surface.normal]
+    pub fn positions(&self, rays: &[RayRow], hits: &[Hit]) -> Result<Vec<DVec3>, BatchError> {
+        self.each(rays.len(), DVec3::NAN, |ray, _| match &hits[ray] {
+            hit if hit.is_miss() => DVec3::NAN,
+            hit => whole_query(&rays[ray]).ray.at(hit.t),
+        })
+    }
+
+    /// Unit normal of the surface that each ray meets, as [`World::interact`] has it; NaN for a miss.
+    ///
+    /// # Errors
+    /// See [`BatchError`].
+    pub fn normals(&self, rays: &[RayRow], hits: &[Hit]) -> Result<Vec<DVec3>, BatchError> {
+        self.each(rays.len(), DVec3::NAN, |ray, _| match &hits[ray] {
+            hit if hit.is_miss() => DVec3::NAN,
+            hit => self.world.normal(&whole_query(&rays[ray]), hit),
         })
     }
 
@@ -134,13 +140,13 @@ impl Batch<'_> {
     /// See [`BatchError`].
     pub fn meets_any(&self, rays: &[RayRow], t_max: f64) -> Result<Vec<bool>, BatchError> {
         if self.world.has_beams() {
-            return self.in_beams(rays, t_max, |queries, blocked| {
+            return self.in_beams(rays, t_max, false, |queries, blocked| {
                 let account = Account::Sum(&mut Counters::default());
                 self.world
                     .meets_on_account(queries, &|_| true, blocked, account);
             });
         }
-        self.each(rays.len(), |ray, scratch| {
+        self.each(rays.len(), false, |ray, scratch| {
             let query = row_query(&rays[ray], t_max);
             self.world
                 .meets_any(&query, &|_| true, scratch, &mut Counters::default())
@@ -156,7 +162,7 @@ impl Batch<'_> {
         rays: &[RayRow],
         whole_line: bool,
     ) -> Result<Vec<u64>, BatchError> {
-        self.each(rays.len(), |ray, scratch| {
+        self.each(rays.len(), 0, |ray, scratch| {
             let line = self.world.line(&whole_query(&rays[ray]), whole_line);
             line.map_or(0, |line| {
                 self.world
@@ -223,41 +229,70 @@ impl Batch<'_> {
     /// # Errors
     /// See [`BatchError`].
     pub fn regions(&self, points: &[[f64; 3]]) -> Result<Vec<Region>, BatchError> {
-        self.each(points.len(), |point, scratch| {
+        self.each(points.len(), Region::OUTSIDE, |point, scratch| {
             self.world
                 .region_of(points[point].into(), scratch, &mut Counters::default())
         })
     }
 
-    /// What `answer` finds for slices of the rays, which travel together.
-    fn in_beams<T: Send>(
+    /// What `answer` finds for slices of the rays, which travel together; `blank` stands where the
+    /// answers will be.
+    fn in_beams<T: Copy + Send + Sync>(
         &self,
         rays: &[RayRow],
         t_max: f64,
+        blank: T,
         answer: impl Fn(&[RayQuery], &mut Vec<T>) + Sync,
     ) -> Result<Vec<T>, BatchError> {
-        let slices = self.slices(rays.len(), |slice, _| {
+        self.in_place(rays.len(), blank, |slice, places| {
             let queries = rays[slice].iter().map(|row| row_query(row, t_max));
-            let mut answers = Vec::new();
+            let mut answers = Vec::with_capacity(places.len());
             answer(&queries.collect::<Vec<_>>(), &mut answers);
-            answers
-        })?;
-        let mut all = room(rays.len())?;
-        all.extend(slices.into_iter().flatten());
-        Ok(all)
+            places.copy_from_slice(&answers);
+        })
     }
 
-    /// `answer` for every index.
-    fn each<T: Send>(
+    /// `answer` for every index; `blank` stands where the answers will be.
+    fn each<T: Copy + Send + Sync>(
         &self,
         count: usize,
+        blank: T,
         answer: impl Fn(usize, &mut Scratch) -> T + Sync,
     ) -> Result<Vec<T>, BatchError> {
-        let slices = self.slices(count, |slice, scratch| {
-            slice.map(|i| answer(i, scratch)).collect::<Vec<T>>()
-        })?;
+        self.in_place(count, blank, |slice, places| {
+            self.world.scratch.with(|scratch| {
+                for (index, place) in slice.zip(places) {
+                    *place = answer(index, scratch);
+                }
+            });
+        })
+    }
+
+    /// `work` on every slice of the indices and of the answers. The threads share in fetching the
+    /// memory for these too, which takes as long as many an answer.
+    fn in_place<T: Copy + Send + Sync>(
+        &self,
+        count: usize,
+        blank: T,
+        work: impl Fn(Range<usize>, &mut [T]) + Sync,
+    ) -> Result<Vec<T>, BatchError> {
         let mut all = room(count)?;
-        all.extend(slices.into_iter().flatten());
+        let one = |(slice, places): (usize, &mut [T])| {
+            if self.cancel.load(Ordering::Relaxed) {
+                return Err(BatchError::Cancelled);
+            }
+            let start = slice * SLICE;
+            work(start..start + places.len(), places);
+            Ok(())
+        };
+        // A few rays are answered before another thread would have started.
+        if count <= SLICE {
+            all.resize(count, blank);
+            all.chunks_mut(SLICE).enumerate().try_for_each(one)?;
+        } else {
+            all.par_extend(rayon::iter::repeat_n(blank, count).with_min_len(SLICE));
+            all.par_chunks_mut(SLICE).enumerate().try_for_each(one)?;
+        }
         Ok(all)
     }
 

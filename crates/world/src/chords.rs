@@ -176,18 +176,23 @@ impl World {
         let ends = chords.iter().flat_map(|c| [c.enter.face, c.exit.face]);
         let crossed = ends.filter(|face| *face != FaceId::NONE).count() as u64;
         scratch.counted = chords;
-        let mut sheets = 0;
+        // A triangle may be shown more than once.
+        let mut sheets: Vec<FaceId> = Vec::new();
         self.sheets.visit_line(
             line,
             f64::INFINITY,
             &mut scratch.triangles,
             counters,
             |hit| {
-                sheets += u64::from(!self.starts_on(line, &Interface::of_sheet(hit)));
+                if !self.starts_on(line, &Interface::of_sheet(hit)) {
+                    sheets.push(hit.face);
+                }
                 f64::INFINITY
             },
         );
-        crossed + sheets + self.count_copied_sheets(line, scratch, counters)
+        sheets.sort_unstable();
+        sheets.dedup();
+        crossed + sheets.len() as u64 + self.count_copied_sheets(line, scratch, counters)
     }
 
     /// The unit normal at an end of one of the ray's chords, pointing out of the chord's solid (or

@@ -23,7 +23,7 @@ pub struct MemoryStats {
     pub triangles: u64,
     /// Cells over triangles, with the lists of triangles in them.
     pub triangle_cells: u64,
-    /// The octrees with wide nodes over triangles.
+    /// The octrees with wide nodes over triangles, and the corners that stand with them.
     pub wide_trees: u64,
     /// The octree with wide nodes over copies of prototypes; the copies' transforms are the scene's.
     pub instances: u64,
@@ -154,6 +154,7 @@ impl World {
         memory.triangles += triangles.bytes();
         memory.triangle_cells += triangles.cell_bytes();
         memory.wide_trees += triangles.tree_stats().map_or(0, |stats| stats.bytes);
+        memory.wide_trees += triangles.packed_bytes();
         if let Some(cells) = triangles.partition().map(|cells| &cells.stats().cells) {
             memory.building = memory.building.max(cells.peak_bytes);
         }

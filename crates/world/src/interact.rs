@@ -107,6 +107,13 @@ impl World {
         surface
     }
 
+    /// The normal of a hit of `query`, as [`World::interact`] has it, for less.
+    #[must_use]
+    pub fn normal(&self, query: &RayQuery, hit: &Hit) -> DVec3 {
+        let of_sheet = self.sheets.normal(hit.face);
+        of_sheet.unwrap_or_else(|| self.interact(query, hit).normal)
+    }
+
     /// Shading data of a face (of which copy, and whether it is entered) that the line crosses at a
     /// position in the scene's coordinates, and whether it is a triangle of a sheet.
     pub(crate) fn point(

@@ -37,5 +37,5 @@ pub use octray_geometry::Membership;
 pub use octray_geometry::mesh::TriangleMarks;
 pub use octray_tree::{
     CellTreeStats, Criteria, Division, Encoding, LvsiStats, LvsiStore, LvsiTable, PartitionStats,
-    TableSize, Tally, Traversal, WideTreeConfig, WideTreeError, WideTreeStats,
+    Quality, TableSize, Tally, Traversal, WideTreeConfig, WideTreeError, WideTreeStats,
 };

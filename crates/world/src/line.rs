@@ -17,6 +17,8 @@ const LIMIT_ROUNDING: f64 = 1.0 / (1u64 << 49) as f64;
 pub(crate) struct Place {
     pub(crate) frame: SceneFrame,
     center: DVec3,
+    /// A 256th of the power of two below the scene's size.
+    step: f64,
 }
 
 impl Place {
@@ -39,17 +41,21 @@ impl Place {
         } else {
             bounds.center() - frame.origin
         };
-        Self { frame, center }
+        Self {
+            frame,
+            center,
+            step: libm::ldexp(1.0, libm::ilogb(frame.size) - 8),
+        }
     }
 
     /// `shift` to within a 512th of the scene's size, as a short number: a line whose coordinates
     /// are short numbers then has an exact origin, and crosses the planes that meet in an edge at
     /// one parameter if it goes through the edge.
+    #[inline]
     fn short(&self, shift: f64) -> f64 {
-        let step = libm::ldexp(1.0, libm::ilogb(self.frame.size) - 8);
-        let steps = libm::rint(shift / step);
+        let steps = (shift / self.step).round_ties_even();
         if steps.is_finite() {
-            steps * step
+            steps * self.step
         } else {
             shift
         }
@@ -81,12 +87,18 @@ pub(crate) struct Line {
 }
 
 /// The direction divided by the power of two below its largest component, and that power.
+#[inline]
 fn scaled(direction: DVec3, largest: f64) -> (DVec3, f64) {
-    // The same as below, for lengths whose powers are normal numbers.
     if (1e-300..1e300).contains(&largest) {
         let power = f64::from_bits(largest.to_bits() & EXPONENT_BITS);
         return (direction * power.recip(), power);
     }
+    scaled_far(direction, largest)
+}
+
+/// The same for directions whose power of two, or its reciprocal, is no normal number.
+#[cold]
+fn scaled_far(direction: DVec3, largest: f64) -> (DVec3, f64) {
     let exponent = libm::ilogb(largest);
     let scaled = direction.to_array().map(|x| libm::ldexp(x, -exponent));
     (DVec3::from_array(scaled), libm::ldexp(1.0, exponent))
@@ -94,6 +106,7 @@ fn scaled(direction: DVec3, largest: f64) -> (DVec3, f64) {
 
 impl Line {
     /// `None` for a ray with a NaN, an infinity or no direction: it meets nothing.
+    #[inline]
     pub(crate) fn new(query: &RayQuery, place: &Place) -> Option<Self> {
         let Ray { origin, direction } = query.ray;
         let largest = direction.abs().max_element();

@@ -4,10 +4,11 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use octray_geometry::mesh::{
-    Placement, SearchCost, SearchMemory, TrianglePoint, TriangleSearch, TriangleTree,
+    NearestTriangle, Placement, SearchCost, SearchMemory, TrianglePoint, TriangleQuery,
+    TriangleSearch, TriangleTree,
 };
 use octray_geometry::{FaceId, MaterialId, SceneFrame, Sheet, TriangleMesh};
-use octray_math::Interval;
+use octray_math::{DVec3, Interval};
 use octray_scene::{ObjectId, Scene, Shape};
 use octray_tree::WideTreeError;
 
@@ -152,6 +153,45 @@ impl Sheets {
         Some((part.object, own.unwrap_or(object.material)))
     }
 
+    /// The search for the nearest triangle on a line, before `limit` or at it.
+    pub(crate) fn query(&self, line: &Line, limit: f64) -> TriangleQuery {
+        TriangleQuery {
+            ray: line.ray,
+            span: Interval::new(line.origin, limit.min(line.end)),
+            departed: self.triangle(line.departure.face),
+        }
+    }
+
+    /// What was found, as a face.
+    pub(crate) const fn hit(&self, found: &NearestTriangle) -> SheetHit {
+        SheetHit {
+            s: found.t,
+            face: FaceId(self.first_face + found.triangle),
+            entering: found.entering,
+        }
+    }
+
+    /// The nearest triangle on a line, before `limit` or at it.
+    pub(crate) fn nearest(
+        &self,
+        line: &Line,
+        limit: f64,
+        memory: &mut SearchMemory,
+        counters: &mut Counters,
+    ) -> Option<SheetHit> {
+        if self.triangles.is_empty() {
+            return None;
+        }
+        let mut nearest = None;
+        let query = self.query(line, limit);
+        self.triangles
+            .nearest(std::slice::from_ref(&query), memory, |_, found, cost| {
+                nearest = found.map(|found| self.hit(&found));
+                counters.add_search(&cost);
+            });
+        nearest
+    }
+
     /// Tests the triangles near the line in `within`; `visit` returns the parameter beyond which
     /// nothing matters any more.
     pub(crate) fn visit_line(
@@ -181,6 +221,14 @@ impl Sheets {
                 })
             });
         counters.add_search(&cost);
+    }
+
+    /// The unit normal of a triangle, zero if it has no area.
+    pub(crate) fn normal(&self, face: FaceId) -> Option<DVec3> {
+        let triangle = self.triangle(face)?;
+        let part = self.part(triangle);
+        part.placement
+            .normal(&part.mesh, triangle - part.first_triangle)
     }
 
     /// Shading data of a triangle that the line crosses.

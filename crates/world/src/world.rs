@@ -13,10 +13,11 @@ use thiserror::Error;
 
 use crate::instances::Instances;
 use crate::line::{Line, Place};
-use crate::sheets::{SheetHit, Sheets};
+use crate::sheets::Sheets;
 use crate::solids::{Interface, Scratch, Solids};
 use crate::{
-    CellList, CellListError, CellsOf, Counters, Hit, MarkingStats, MemoryStats, Method, RayQuery,
+    CellList, CellListError, CellsOf, Counters, Departure, Hit, MarkingStats, MemoryStats, Method,
+    RayQuery,
 };
 
 /// How to prepare a world.
@@ -67,6 +68,8 @@ pub struct World {
     pub(crate) place: Place,
     /// For each material whether no light passes it.
     opaque: Vec<bool>,
+    /// Whether every boundary is seen and stops light.
+    all_blocks: bool,
     pub(crate) scratch: ScratchPool,
 }
 
@@ -167,11 +170,15 @@ impl World {
         let sheets = Sheets::prepare(&scene, &place.frame, solids.face_count(), config)?;
         let own_faces = solids.face_count() + sheets.triangle_count() as u32;
         let instances = Instances::prepare(&scene, &place.frame, own_faces, config)?;
-        let opaque = scene
+        let opaque: Vec<bool> = scene
             .materials()
             .iter()
             .map(|m| !m.pigment.is_transparent())
             .collect();
+        let all_blocks = solids.shows_all()
+            && instances.is_empty()
+            && !opaque.contains(&false)
+            && scene.objects().iter().all(|object| object.casts_shadows);
         let scratch = ScratchPool::default();
         Ok(Self {
             scene,
@@ -180,6 +187,7 @@ impl World {
             instances,
             place,
             opaque,
+            all_blocks,
             scratch,
         })
     }
@@ -311,7 +319,7 @@ impl World {
         };
         let limit_of = |best: &Option<Interface>| best.map_or(limit, |b| b.s);
         self.solids
-            .sweep_line(line, limit, scratch, counters, |change| {
+            .sweep_forward(line, limit, scratch, counters, |change| {
                 if let Some(found) = change.interface()
                     && nearer(found.s, found.face, &best)
                 {
@@ -319,20 +327,10 @@ impl World {
                 }
                 limit_of(&best)
             });
-        let mut sheet: Option<SheetHit> = None;
-        self.sheets.visit_line(
-            line,
-            limit_of(&best),
-            &mut scratch.triangles,
-            counters,
-            |found| {
-                let known = sheet.map_or(best, |hit| Some(Interface::of_sheet(&hit)));
-                if nearer(found.s, found.face, &known) {
-                    sheet = Some(*found);
-                }
-                sheet.map_or(limit_of(&best), |hit| hit.s)
-            },
-        );
+        let sheet = self
+            .sheets
+            .nearest(line, limit_of(&best), &mut scratch.triangles, counters)
+            .filter(|hit| nearer(hit.s, hit.face, &best));
         sheet.map_or(best, |hit| Some(Interface::of_sheet(&hit)))
     }
 
@@ -357,7 +355,7 @@ impl World {
             return;
         }
         self.solids
-            .sweep_line(line, limit, scratch, counters, |change| {
+            .sweep_forward(line, limit, scratch, counters, |change| {
                 if let Some(found) = change.interface() {
                     limit = visit(&found);
                 }
@@ -392,6 +390,20 @@ impl World {
             return hits.iter().any(|hit| counts(hit.face));
         }
         let mut met = false;
+        // Where a departure says what lies behind, every change ahead counts.
+        if self.all_blocks && line.departure != Departure::NONE {
+            let memory = &mut scratch.triangles;
+            self.sheets
+                .visit_line(line, f64::INFINITY, memory, counters, |hit| {
+                    met |= hit.s < line.end;
+                    if met {
+                        f64::NEG_INFINITY
+                    } else {
+                        f64::INFINITY
+                    }
+                });
+            return met || self.solids.changes(line, scratch, counters);
+        }
         self.visit_own(line, f64::INFINITY, scratch, counters, |found| {
             met |= found.s < line.end && counts(found.face) && !self.starts_on(line, found);
             if met {

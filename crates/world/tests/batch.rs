@@ -77,7 +77,9 @@ fn batches_give_what_single_rays_give_for_any_number_of_threads() {
             let closest = batch.closest(&rays).expect("not cancelled");
             let met = batch.meets_any(&rays, 3.0).expect("not cancelled");
             let regions = batch.regions(&points).expect("not cancelled");
-            let mut found_regions = 0;
+            let positions = batch.positions(&rays, &closest).expect("not cancelled");
+            let normals = batch.normals(&rays, &closest).expect("not cancelled");
+            let (mut found_regions, mut found_normals) = (0, 0);
             for whole in [false, true] {
                 let counts = batch.count_crossings(&rays, whole).expect("not cancelled");
                 let crossings = batch.crossings(&rays, whole).expect("not cancelled");
@@ -107,12 +109,20 @@ fn batches_give_what_single_rays_give_for_any_number_of_threads() {
                 world.closest(&[row_query(ray, f64::INFINITY)], &mut hits, &mut counters);
                 assert_eq!(closest[i], hits[0]);
                 assert_eq!(met[i], hits[0].t < 3.0);
+                if hits[0].is_miss() {
+                    assert!(positions[i].is_nan() && normals[i].is_nan());
+                } else {
+                    let surface = world.interact(&row_query(ray, f64::INFINITY), &hits[0]);
+                    assert_eq!(positions[i], surface.position);
+                    assert_eq!(normals[i], surface.normal);
+                    found_normals += 1;
+                }
                 let point = DVec3::from_array(points[i]);
                 world.regions(&[point], &mut of_point, &mut counters);
                 assert_eq!(regions[i], of_point[0]);
                 found_regions += usize::from(regions[i] != Region::OUTSIDE);
             }
-            assert!(found_regions > 100);
+            assert!(found_regions > 100 && found_normals > 1000);
         });
     }
 }

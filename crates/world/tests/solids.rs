@@ -148,7 +148,8 @@ fn a_lone_surface_is_not_followed_into_the_smallest_cells() {
         Solid::sphere(1.0),
         Solid::cone(1.0, 0.0, 0.0, 2.0),
     ] {
-        let world = world([solid.expect("valid")], Method::Auto, Criteria::default());
+        let method = "octree".parse().expect("a method");
+        let world = world([solid.expect("valid")], method, Criteria::default());
         let cells = world.stats().cells.expect("an octree").cells;
         assert!(cells.occupied < 2000, "{cells:?}");
     }
@@ -191,15 +192,20 @@ proptest! {
     ) {
         let solids: Vec<Solid> = models.into_iter().map(|m| m.solid).collect();
         let tree = world(solids.clone(), Method::Auto, deep());
+        // Without cells, where the solids are small.
+        let left_open = world(solids.clone(), Method::Auto, Criteria::default());
         let brute = world(solids, Method::Brute, deep());
         for (origin, direction) in origins {
             let ray = Ray::new(origin, direction);
-            prop_assert_eq!(crossings(&tree, ray, true), crossings(&brute, ray, true));
+            let expected = crossings(&brute, ray, true);
+            prop_assert_eq!(crossings(&tree, ray, true), &expected[..]);
+            prop_assert_eq!(crossings(&left_open, ray, true), expected);
             // Then along a chain of departures, through and off everything.
             let mut query = RayQuery::new(ray);
             for bounce in 0..6 {
                 let hit = closest(&tree, query);
                 prop_assert_eq!(hit, closest(&brute, query));
+                prop_assert_eq!(hit, closest(&left_open, query));
                 if hit.is_miss() {
                     break;
                 }

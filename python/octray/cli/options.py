@@ -158,6 +158,11 @@ def tree_options(function: Callable[..., Any]) -> Callable[..., Any]:
     for add in reversed(
         (
             click.option(
+                "--quality",
+                type=click.Choice(["fast", "full"]),
+                help="Trees over triangles that are built soon, or searched soon; full by default.",
+            ),
+            click.option(
                 "--tree-objects",
                 type=click.IntRange(1, 2**32 - 1),
                 metavar="N",
@@ -209,7 +214,7 @@ def tree_values(options: dict[str, Any]) -> dict[str, Any]:
     """Give what ``tree_options`` asked for as keywords of ``Scene.prepare``."""
     names = ("objects", "depth", "cost", "share", "memory")
     values = {f"tree_{name}": options[f"tree_{name}"] for name in names}
-    values |= {name: options[name] for name in ("lvsi_table", "lvsi_load")}
+    values |= {name: options[name] for name in ("quality", "lvsi_table", "lvsi_load")}
     if values["tree_memory"] is not None:
         values["tree_memory"] <<= 20
     return values

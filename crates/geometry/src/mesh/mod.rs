@@ -17,4 +17,7 @@ pub use intersect::{MeshCrossing, TriangleHit, TriangleRay};
 pub use placement::{Placement, TrianglePoint};
 pub use solid::MeshSolid;
 pub use triangle_mesh::{CornerAttribute, MeshError, TriangleMesh};
-pub use triangle_tree::{SearchCost, SearchMemory, TriangleMarks, TriangleSearch, TriangleTree};
+pub use triangle_tree::{
+    NearestTriangle, SearchCost, SearchMemory, TriangleMarks, TriangleQuery, TriangleSearch,
+    TriangleTree,
+};

@@ -69,6 +69,22 @@ impl Placement {
         if self.mirrored { [a, c, b] } else { [a, b, c] }
     }
 
+    /// The corners of a triangle in the world, counter-clockwise seen from the front; `None` if there
+    /// is no such triangle.
+    fn corners(&self, mesh: &TriangleMesh, triangle: u32) -> Option<[DVec3; 3]> {
+        let wound = self.wound(*mesh.triangles().get(triangle as usize)?);
+        Some(wound.map(|i| {
+            self.world_from_mesh
+                .transform_point3(mesh.positions()[i as usize])
+        }))
+    }
+
+    /// The normal of a triangle as [`Placement::point`] has it; `None` if there is no such triangle.
+    #[must_use]
+    pub fn normal(&self, mesh: &TriangleMesh, triangle: u32) -> Option<DVec3> {
+        self.corners(mesh, triangle).map(normal)
+    }
+
     /// Normals and texture coordinates where the line crosses a triangle, and whether it comes from
     /// the front; `None` if it does not cross it.
     #[must_use]
@@ -79,11 +95,7 @@ impl Placement {
         ray: &Ray,
     ) -> Option<(TrianglePoint, bool)> {
         let index = triangle as usize;
-        let wound = self.wound(*mesh.triangles().get(index)?);
-        let corners = wound.map(|i| {
-            self.world_from_mesh
-                .transform_point3(mesh.positions()[i as usize])
-        });
+        let corners = self.corners(mesh, triangle)?;
         let hit = TriangleRay::new(ray).intersect(corners)?;
         let [a, b, c] = hit.barycentric;
         let weights = if self.mirrored { [a, c, b] } else { [a, b, c] };
@@ -97,15 +109,18 @@ impl Placement {
             let corners = uv.triangles[index].map(|i| uv.values[i as usize]);
             corners.into_iter().zip(weights).map(|(t, w)| t * w).sum()
         });
-        let [a, b, c] = corners;
-        let normal = unit((b - a).cross(c - a)).unwrap_or(DVec3::ZERO);
         let point = TrianglePoint {
-            normal,
+            normal: normal(corners),
             shading_normal,
             texcoord,
         };
         Some((point, hit.entering))
     }
+}
+
+/// The unit normal of a triangle's front, zero if it has no area.
+fn normal([a, b, c]: [DVec3; 3]) -> DVec3 {
+    unit((b - a).cross(c - a)).unwrap_or(DVec3::ZERO)
 }
 
 /// Scaled first, because the squares of a huge or tiny mesh's normals leave the range.

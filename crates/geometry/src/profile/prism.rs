@@ -7,8 +7,8 @@ use super::formula::Formula;
 use super::pieces::Piece;
 use super::region::Region;
 use crate::ShapeError;
+use crate::boundary::FlatBoundary;
 use crate::composite::{Composite, CompositeFace, CompositeKind};
-use crate::flat_boundary::FlatBoundary;
 use crate::surface::Canonical;
 
 const WISHES: Wishes = Wishes {

@@ -5,7 +5,7 @@ use octray::scene::ObjectId;
 use octray::world::{Hit, World};
 use pyo3::prelude::*;
 
-use super::rows::{Method, Rays};
+use super::rows::{Method, Rays, each};
 use crate::scene::Scene;
 
 /// Ray, number of the face, and `t` of every crossing.
@@ -24,7 +24,7 @@ pub(crate) fn crossings<'py>(
     method: Method<'_>,
 ) -> PyResult<Crossings<'py>> {
     let py = scene.py();
-    let rays = Rays::new("rays", rays)?;
+    let rays = Rays::new("rays", rays, method.1)?;
     let (world, found) = rays.ask(scene, method, move |batch, rays| {
         let mut found: Vec<(i64, Hit)> = Vec::new();
         if limit == Some(1) {
@@ -40,17 +40,12 @@ pub(crate) fn crossings<'py>(
         Ok(found)
     })?;
     let number = Numbering::new(&world);
-    let column = |value: &dyn Fn(&(i64, Hit)) -> i64| -> Bound<'py, PyArray1<i64>> {
-        found
-            .iter()
-            .map(value)
-            .collect::<Vec<i64>>()
-            .into_pyarray(py)
-    };
-    let t: Vec<f64> = found.iter().map(|(_, hit)| hit.t).collect();
+    let index_ray = each(py, method.1, &found, |(ray, _)| *ray)?;
+    let index_face = each(py, method.1, &found, |(_, hit)| number.of(hit))?;
+    let t = each(py, method.1, &found, |(_, hit)| hit.t)?;
     Ok((
-        column(&|(ray, _)| *ray),
-        column(&|(_, hit)| number.of(hit)),
+        index_ray.into_pyarray(py),
+        index_face.into_pyarray(py),
         t.into_pyarray(py),
     ))
 }

@@ -2,13 +2,15 @@
 
 use std::sync::Arc;
 
-use numpy::{IntoPyArray, PyArrayDyn, PyArrayMethods};
-use octray::world::{Batch, Hit, RayRow, World};
+use numpy::PyArrayDyn;
+use octray::math::DVec3;
+use octray::scene::ObjectId;
+use octray::world::{Batch, BatchError, Hit, RayRow, World};
 use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
 use pyo3::types::PyDict;
 
-use super::rows::{Method, Rays, count_invalid};
+use super::rows::{Method, Rays, count_invalid, each};
 use crate::scene::Scene;
 
 /// What Open3D writes where a ray meets nothing.
@@ -22,44 +24,54 @@ pub(crate) struct Hits {
     threads: Option<usize>,
     rays: Rays,
     hits: Arc<Vec<Hit>>,
-    surface: PyOnceLock<Surface>,
-}
-
-/// What is computed only when someone asks, shape (..., 3) each.
-struct Surface {
-    positions: Py<PyArrayDyn<f64>>,
-    normals: Py<PyArrayDyn<f64>>,
+    // Computed when someone asks, shape (..., 3) each.
+    positions: PyOnceLock<Py<PyArrayDyn<f64>>>,
+    normals: PyOnceLock<Py<PyArrayDyn<f64>>>,
 }
 
 impl Hits {
-    /// Positions and normals, computed when either is first asked for; NaN where there is no hit.
-    fn surface(&self, py: Python<'_>) -> PyResult<&Surface> {
-        self.surface.get_or_try_init(py, || {
-            let hits = Arc::clone(&self.hits);
-            let ask = move |batch: &Batch<'_>, rays: &[RayRow]| batch.surfaces(rays, &hits);
-            let surfaces = self.rays.ask_world(py, &self.world, self.threads, ask)?;
-            let array = |which: usize| -> PyResult<Py<PyArrayDyn<f64>>> {
-                let vectors = surfaces.iter().map(|s| s[which].to_array()).collect();
-                Ok(self.rays.shaped_vectors(py, vectors)?.unbind())
-            };
-            Ok(Surface {
-                positions: array(0)?,
-                normals: array(1)?,
-            })
-        })
+    /// What `question` answers about all hits.
+    fn vectors(
+        &self,
+        py: Python<'_>,
+        question: impl FnOnce(&Batch<'_>, &[RayRow], &[Hit]) -> Result<Vec<DVec3>, BatchError>
+        + Send
+        + 'static,
+    ) -> PyResult<Vec<DVec3>> {
+        let hits = Arc::clone(&self.hits);
+        let ask = move |batch: &Batch<'_>, rays: &[RayRow]| question(batch, rays, &hits);
+        self.rays.ask_world(py, &self.world, self.threads, ask)
+    }
+
+    /// Vectors as an array of shape (..., 3), each changed by `value`.
+    fn shaped<'py>(
+        &self,
+        py: Python<'py>,
+        vectors: &[DVec3],
+        value: impl Fn(DVec3) -> DVec3 + Send + Sync,
+    ) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
+        let vectors = each(py, self.threads, vectors, |v| value(*v).to_array())?;
+        self.rays.shaped_vectors(py, vectors)
+    }
+
+    /// What `value` says of every hit, in an array of the rays' shape.
+    fn array<'py, T: numpy::Element>(
+        &self,
+        py: Python<'py>,
+        value: impl Fn(&Hit) -> T + Send + Sync,
+    ) -> PyResult<Bound<'py, PyArrayDyn<T>>> {
+        self.rays
+            .shaped(py, each(py, self.threads, &self.hits, value)?)
     }
 
     fn ids<'py>(
         &self,
         py: Python<'py>,
-        id: impl Fn(&Hit) -> Option<u32>,
+        id: impl Fn(&Hit) -> Option<u32> + Send + Sync,
     ) -> PyResult<Bound<'py, PyArrayDyn<i64>>> {
-        let ids: Vec<i64> = self
-            .hits
-            .iter()
-            .map(|hit| id(hit).filter(|_| !hit.is_miss()).map_or(-1, i64::from))
-            .collect();
-        self.rays.shaped(py, ids)
+        self.array(py, |hit| {
+            id(hit).filter(|_| !hit.is_miss()).map_or(-1, i64::from)
+        })
     }
 }
 
@@ -68,8 +80,7 @@ impl Hits {
     /// Distances in units of the rays' directions, float64; infinite for a miss.
     #[getter]
     fn t<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
-        self.rays
-            .shaped(py, self.hits.iter().map(|hit| hit.t).collect())
+        self.array(py, |hit| hit.t)
     }
 
     /// Ids of the objects (indices into `Scene.names`), int64; -1 for a miss.
@@ -98,20 +109,27 @@ impl Hits {
     /// Unit normals that point out of the solid, shape (..., 3); NaN for a miss.
     #[getter]
     fn normal<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
-        Ok(self.surface(py)?.normals.bind(py).clone())
+        let made = self.normals.get_or_try_init(py, || {
+            let normals = self.vectors(py, |batch, rays, hits| batch.normals(rays, hits))?;
+            PyResult::Ok(self.shaped(py, &normals, |normal| normal)?.unbind())
+        })?;
+        Ok(made.bind(py).clone())
     }
 
     /// Points of the surfaces, shape (..., 3); NaN for a miss.
     #[getter]
     fn position<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
-        Ok(self.surface(py)?.positions.bind(py).clone())
+        let made = self.positions.get_or_try_init(py, || {
+            let positions = self.vectors(py, |batch, rays, hits| batch.positions(rays, hits))?;
+            PyResult::Ok(self.shaped(py, &positions, |position| position)?.unbind())
+        })?;
+        Ok(made.bind(py).clone())
     }
 
     /// Whether the ray met something, shape of `t`.
     #[getter]
     fn hit<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArrayDyn<bool>>> {
-        self.rays
-            .shaped(py, self.hits.iter().map(|hit| !hit.is_miss()).collect())
+        self.array(py, |hit| !hit.is_miss())
     }
 
     /// How many of the rays are none, and so miss: those with a NaN or an infinity, or without
@@ -127,23 +145,22 @@ impl Hits {
     /// `primitive_normals` (float64, (..., 3), 0 for a miss). There are no `primitive_uvs`: exact
     /// surfaces have no triangles.
     fn to_open3d<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        let faces = self.hits.iter();
-        let faces = faces.map(|hit| self.world.face_in_object(hit.face));
-        let (geometries, primitives): (Vec<u32>, Vec<u32>) = faces
-            .map(|face| face.map_or((OPEN3D_NONE, OPEN3D_NONE), |(object, n)| (object.0, n)))
-            .unzip();
-        let normals = self.normal(py)?.to_vec()?;
-        let normals = normals
-            .into_iter()
-            .map(|x| if x.is_nan() { 0.0 } else { x });
-        let mut shape = self.rays.shape.clone();
-        shape.push(3);
-        let normals = normals.collect::<Vec<f64>>().into_pyarray(py);
+        let faces = each(py, self.threads, &self.hits, |hit| {
+            self.world.face_in_object(hit.face)
+        })?;
+        let column = |id: fn((ObjectId, u32)) -> u32| {
+            let ids = each(py, self.threads, &faces, |face| {
+                face.map_or(OPEN3D_NONE, id)
+            })?;
+            self.rays.shaped(py, ids)
+        };
+        let normals = self.vectors(py, |batch, rays, hits| batch.normals(rays, hits))?;
+        let seen = |normal: DVec3| if normal.is_nan() { DVec3::ZERO } else { normal };
         let answers = PyDict::new(py);
         answers.set_item("t_hit", self.t(py)?)?;
-        answers.set_item("geometry_ids", self.rays.shaped(py, geometries)?)?;
-        answers.set_item("primitive_ids", self.rays.shaped(py, primitives)?)?;
-        answers.set_item("primitive_normals", normals.reshape(shape.as_slice())?)?;
+        answers.set_item("geometry_ids", column(|(object, _)| object.0)?)?;
+        answers.set_item("primitive_ids", column(|(_, number)| number)?)?;
+        answers.set_item("primitive_normals", self.shaped(py, &normals, seen)?)?;
         Ok(answers)
     }
 
@@ -163,13 +180,14 @@ pub(crate) fn cast_rays(
     rays: &Bound<'_, PyAny>,
     method: Method<'_>,
 ) -> PyResult<Hits> {
-    let rays = Rays::new("rays", rays)?;
+    let rays = Rays::new("rays", rays, method.1)?;
     let (world, hits) = rays.ask(scene, method, |batch, rays| batch.closest(rays))?;
     Ok(Hits {
         world,
         threads: method.1,
         rays,
         hits: Arc::new(hits),
-        surface: PyOnceLock::new(),
+        positions: PyOnceLock::new(),
+        normals: PyOnceLock::new(),
     })
 }

@@ -407,7 +407,7 @@ pub(crate) fn list_intersections(
     method: Method<'_>,
 ) -> PyResult<Intersections> {
     let overlaps = overlaps_named(overlaps)?;
-    let rays = Rays::new("rays", rays)?;
+    let rays = Rays::new("rays", rays, method.1)?;
     let ask = move |batch: &Batch<'_>, rays: &[RayRow]| batch.chords(rays, whole_line, overlaps);
     let (world, chords) = rays.ask(scene, method, ask)?;
     Ok(Intersections {

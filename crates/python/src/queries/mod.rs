@@ -24,7 +24,7 @@ pub(crate) fn count_intersections<'py>(
     whole_line: bool,
     method: Method<'_>,
 ) -> PyResult<Bound<'py, PyArrayDyn<i64>>> {
-    let rays = Rays::new("rays", rays)?;
+    let rays = Rays::new("rays", rays, method.1)?;
     let (_, counts) = rays.ask(scene, method, move |batch, rays| {
         let counts = batch.count_crossings(rays, whole_line)?;
         Ok(counts.into_iter().map(|count| count as i64).collect())
@@ -42,7 +42,7 @@ pub(crate) fn test_occlusions<'py>(
     if far.is_nan() {
         return Err(PyValueError::new_err("tfar must be a number"));
     }
-    let rays = Rays::new("rays", rays)?;
+    let rays = Rays::new("rays", rays, method.1)?;
     let (_, met) = rays.ask(scene, method, move |batch, rays| batch.meets_any(rays, far))?;
     rays.shaped(scene.py(), met)
 }
@@ -54,7 +54,7 @@ fn regions<'py, T: numpy::Element + Send + 'static>(
     method: Method<'_>,
     answer: impl Fn(Region) -> T + Send + 'static,
 ) -> PyResult<Bound<'py, PyArrayDyn<T>>> {
-    let points = Rows::<3>::new("points", points)?;
+    let points = Rows::<3>::new("points", points, method.1)?;
     let (_, values) = points.ask(scene, method, move |batch, points| {
         let regions = batch.regions(points)?;
         Ok::<_, BatchError>(regions.into_iter().map(answer).collect())
@@ -88,7 +88,7 @@ pub(crate) fn count_invalid_rays(
     rays: &Bound<'_, PyAny>,
     method: Method<'_>,
 ) -> PyResult<usize> {
-    let rays = Rays::new("rays", rays)?;
+    let rays = Rays::new("rays", rays, method.1)?;
     let (world, ()) = rays.ask(scene, method, |_, _| Ok(()))?;
     Ok(rows::count_invalid(&world, &rays.numbers))
 }

@@ -7,8 +7,9 @@ use numpy::{IntoPyArray, PyArrayDyn, PyArrayMethods, PyUntypedArrayMethods};
 use octray::world::{Batch, BatchError, RayRow, World, row_query};
 use pyo3::exceptions::{PyMemoryError, PyRuntimeError};
 use pyo3::prelude::*;
+use rayon::prelude::*;
 
-use crate::arrays::{Shape, real_array};
+use crate::arrays::{Reals, Shape, reals};
 use crate::pool::pool;
 use crate::scene::Scene;
 use crate::task;
@@ -16,6 +17,8 @@ use crate::world::prepared;
 
 /// Below this many, rows are answered before a thread would have started.
 const FEW: usize = 1024;
+/// Up to this many, answers are put into arrays before a thread would have woken up.
+const MANY: usize = 16 * FEW;
 
 /// How to answer: the name of the accelerator, and how many threads.
 pub(crate) type Method<'a> = (&'a str, Option<usize>);
@@ -31,14 +34,27 @@ pub(crate) struct Rows<const W: usize> {
 pub(crate) type Rays = Rows<6>;
 
 impl<const W: usize> Rows<W> {
-    pub(crate) fn new(what: &str, rows: &Bound<'_, PyAny>) -> PyResult<Self> {
-        let array = real_array(what, rows, Shape::any(W))?;
-        let mut shape = array.shape().to_vec();
+    /// Copies an array, with the threads that will answer.
+    pub(crate) fn new(
+        what: &str,
+        rows: &Bound<'_, PyAny>,
+        threads: Option<usize>,
+    ) -> PyResult<Self> {
+        let py = rows.py();
+        let (numbers, mut shape) = match reals(what, rows, Shape::any(W))? {
+            Reals::Single(array) => {
+                let rows = array.as_slice()?.as_chunks::<W>().0;
+                let numbers = each(py, threads, rows, |row| row.map(f64::from))?;
+                (numbers, array.shape().to_vec())
+            }
+            Reals::Double(array) => {
+                let rows = array.as_slice()?.as_chunks::<W>().0;
+                (each(py, threads, rows, |row| *row)?, array.shape().to_vec())
+            }
+        };
         shape.pop();
-        Ok(Self {
-            numbers: Arc::new(array.as_slice()?.as_chunks::<W>().0.to_vec()),
-            shape,
-        })
+        let numbers = Arc::new(numbers);
+        Ok(Self { numbers, shape })
     }
 
     /// What `question` answers for all rows, in the scene as it stands.
@@ -96,6 +112,25 @@ impl<const W: usize> Rows<W> {
         let flat = vectors.into_flattened().into_pyarray(py);
         flat.reshape(shape.as_slice())
     }
+}
+
+/// What `value` says of every item, in order; by the threads of the pool where there are many, for
+/// most of the time goes into fetching new memory.
+pub(crate) fn each<S: Sync, T: Send>(
+    py: Python<'_>,
+    threads: Option<usize>,
+    items: &[S],
+    value: impl Fn(&S) -> T + Send + Sync,
+) -> PyResult<Vec<T>> {
+    if items.len() <= MANY {
+        return Ok(items.iter().map(value).collect());
+    }
+    let pool = pool(threads)?;
+    if pool.current_num_threads() == 1 {
+        return Ok(items.iter().map(value).collect());
+    }
+    let parts = items.par_iter().with_min_len(FEW);
+    Ok(py.detach(|| pool.install(|| parts.map(value).collect())))
 }
 
 /// How many of the rays are none: not finite, or without direction.

@@ -3,7 +3,7 @@
 use super::cost::{self, Choice, Costs};
 use super::reference::PaddedBox;
 use super::split::Piece;
-use super::subtree::{self, Branch, Budget, largest};
+use super::subtree::{self, Branch, Plan, largest};
 use super::{MAX_DEPTH, WideNode, link};
 
 /// A subtree of not more references is built by one thread. It has a node of its own, so the
@@ -39,16 +39,16 @@ pub(super) struct Built {
 }
 
 /// Divides a piece of at least one reference.
-pub(super) fn divide(piece: Piece<'_>, budget: &Budget) -> Part {
-    below(piece, MAX_HEIGHT, budget)
+pub(super) fn divide(piece: Piece<'_>, plan: &Plan<'_>) -> Part {
+    below(piece, MAX_HEIGHT, plan)
 }
 
-fn below(piece: Piece<'_>, height: u32, budget: &Budget) -> Part {
-    if piece.references.len() <= BRANCH {
-        return Part::Branch(Box::new(subtree::build(piece, height, budget)));
+fn below(piece: Piece<'_>, height: u32, plan: &Plan<'_>) -> Part {
+    if piece.references().len() <= BRANCH {
+        return Part::Branch(Box::new(subtree::build(piece, height, plan)));
     }
-    let [low, high] = piece.split(largest(height - 1));
-    let half = |piece| below(piece, height - 1, budget);
+    let [low, high] = piece.split(largest(height - 1), plan.division.as_ref());
+    let half = |piece| below(piece, height - 1, plan);
     let (low, high) = rayon::join(|| half(low), || half(high));
     let bounds = low.bounds().union(high.bounds());
     let (costs, choice) = cost::join(low.costs(), high.costs(), bounds.half_area(), u32::MAX, 0);

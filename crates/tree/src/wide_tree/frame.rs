@@ -1,7 +1,7 @@
 //! The coordinates that the kernels see: centred on the tree, scaled by a power of two.
 
-use octray_kernels::SlabRay;
 use octray_kernels::slab::{round_down, round_up};
+use octray_kernels::{SlabRay, TriangleLine};
 use octray_math::{Aabb, DVec3, Ray};
 
 /// Maps space to about `[-1, 1]^3` around the tree's centre.
@@ -26,10 +26,13 @@ pub(super) struct LocalBox {
     pub(super) max: [f32; 3],
 }
 
-/// A line in the frame's coordinates, its origin at the closest approach to the centre.
+/// A line in the tree's coordinates, its origin at the closest approach to the centre.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct LocalRay {
+pub struct LocalLine {
     pub(super) slab: SlabRay,
+    origin: DVec3,
+    direction: DVec3,
+    slack: f64,
     /// A local parameter is `t * rate - shift`.
     rate: f64,
     shift: f64,
@@ -55,6 +58,14 @@ impl Frame {
         }
     }
 
+    pub(super) const fn center(&self) -> DVec3 {
+        self.center
+    }
+
+    pub(super) const fn scale(&self) -> f64 {
+        self.scale
+    }
+
     pub(super) fn point(&self, p: DVec3) -> DVec3 {
         (p - self.center) * self.scale
     }
@@ -68,7 +79,7 @@ impl Frame {
 
     /// `None` for a ray that cannot meet the tree, or is none (not finite, or without direction).
     #[inline]
-    pub(super) fn ray(&self, ray: &Ray) -> Option<LocalRay> {
+    pub(super) fn ray(&self, ray: &Ray) -> Option<LocalLine> {
         let longest = ray.direction.abs().max_element();
         if !(ray.origin.is_finite() && ray.direction.is_finite() && longest > 0.0) {
             return None;
@@ -79,8 +90,11 @@ impl Frame {
         let slack = (origin.abs().max_element() + 16.0) * (1.0 / (1u64 << 41) as f64);
         let rate = self.exponent + power;
         if !(slack < 16.0 && rate.abs() < 1000) {
-            return Some(LocalRay {
+            return Some(LocalLine {
                 slab: SlabRay::new([0.0; 3], [1.0; 3], (1u64 << 60) as f64),
+                origin: DVec3::ZERO,
+                direction: DVec3::ONE,
+                slack,
                 rate: 0.0,
                 shift: 0.0,
                 blind: true,
@@ -91,8 +105,11 @@ impl Frame {
         if nearest.abs().max_element() > REACH {
             return None;
         }
-        Some(LocalRay {
+        Some(LocalLine {
             slab: SlabRay::new(nearest.to_array(), direction.to_array(), slack),
+            origin: nearest,
+            direction,
+            slack,
             rate: power_of_two(rate),
             shift,
             blind: false,
@@ -100,15 +117,29 @@ impl Frame {
     }
 }
 
-impl LocalRay {
+impl LocalLine {
+    /// For tests of triangles whose corners are [`super::WideTree::local`] ones; `None` where numbers
+    /// are so extreme that every triangle must be looked at.
+    ///
+    /// Covered is an exact test that rounds as little as [`super::WideTree`] asks of visitors.
+    #[must_use]
+    #[inline]
+    pub fn triangle_line(&self) -> Option<TriangleLine> {
+        let (origin, direction) = (self.origin.to_array(), self.direction.to_array());
+        (!self.blind).then(|| TriangleLine::new(origin, direction, self.slack))
+    }
+
     /// A local parameter not above the one at `t`.
-    pub(super) fn lower(&self, t: f64) -> f32 {
+    #[must_use]
+    #[inline]
+    pub fn lower(&self, t: f64) -> f32 {
         -self.rounded_up(-t, -self.shift, f32::INFINITY)
     }
 
     /// A local parameter not below the one at `t`.
+    #[must_use]
     #[inline]
-    pub(super) fn upper(&self, t: f64) -> f32 {
+    pub fn upper(&self, t: f64) -> f32 {
         self.rounded_up(t, self.shift, f32::INFINITY)
     }
 

@@ -13,9 +13,12 @@
 //! corner of the tree's bounds relative to the ray's origin. (Bounds of items whose parameters are
 //! less accurate must be inflated before the tree is built.)
 
+mod beam;
 mod build;
 mod cost;
+mod divide;
 mod frame;
+mod items;
 mod morton;
 mod reference;
 mod region;
@@ -29,18 +32,25 @@ use std::sync::atomic::AtomicU64;
 
 use bytemuck::{Pod, Zeroable};
 use octray_kernels::{Boxes8, Lanes};
-use octray_math::Aabb;
+use octray_math::{Aabb, DVec3};
+use rayon::prelude::*;
 use thiserror::Error;
 
+use divide::Division;
 use frame::Frame;
 use reference::{PaddedBox, Reference};
 use split::Piece;
-use subtree::Budget;
+use subtree::Plan;
 
-pub use walk::WalkCost;
+pub use beam::{BEAM, Beam, BeamLine, BeamVisitor, GROUPS, PendingBeam};
+pub use frame::LocalLine;
+pub use items::{Coordinates, Items};
+pub use walk::{LeafVisitor, Pending, WalkCost};
 
 /// No way from the root has more nodes than this plus one, whatever the items.
 const MAX_DEPTH: u32 = 73;
+/// How many items a thread looks at in one go.
+const SHARE: usize = 1 << 12;
 /// The most items a leaf may hold.
 const LARGEST_LEAF: u32 = 8;
 
@@ -70,7 +80,7 @@ impl Default for WideTreeConfig {
     fn default() -> Self {
         Self {
             quality: Quality::default(),
-            leaf_size: 4,
+            leaf_size: 8,
             memory_limit: 8 << 30,
         }
     }
@@ -149,6 +159,8 @@ mod link {
 pub struct WideTreeStats {
     /// Items that can be met; empty ones are left out.
     pub items: u64,
+    /// Items in leaves; more than there are where items stand in several.
+    pub references: u64,
     /// Nodes of eight children.
     pub nodes: u64,
     /// Leaves with at least one item.
@@ -171,36 +183,40 @@ pub struct WideTree {
 }
 
 impl WideTree {
-    /// A tree over items with these boxes, built in the current thread pool; the same bytes
-    /// whatever its size.
-    ///
-    /// Empty boxes (NaN makes a box empty) are items that no line meets.
+    /// A tree over items with these boxes; see [`WideTree::over`].
     ///
     /// # Errors
-    /// A box is unbounded, or there are too many items for the format or for the memory limit.
+    /// As there.
     pub fn build(bounds: &[Aabb], config: &WideTreeConfig) -> Result<Self, WideTreeError> {
-        if let Some(item) = bounds.iter().position(|b| !b.is_bounded()) {
-            return Err(WideTreeError::Unbounded(item));
+        Self::over(bounds, config)
+    }
+
+    /// A tree over items, built in the current thread pool; the same bytes whatever its size.
+    ///
+    /// # Errors
+    /// An item is unbounded, or there are too many for the format or for the memory limit.
+    pub fn over<I: Items + ?Sized>(
+        items: &I,
+        config: &WideTreeConfig,
+    ) -> Result<Self, WideTreeError> {
+        let count = items.count();
+        if count > link::MAX_ITEMS {
+            return Err(WideTreeError::TooMany(count));
         }
-        if bounds.len() > link::MAX_ITEMS {
-            return Err(WideTreeError::TooMany(bounds.len()));
-        }
-        let references_bytes = (bounds.len() * size_of::<Reference>()) as u64;
-        let sorting = match config.quality {
-            Quality::Fast => morton::bytes(bounds.len()),
-            Quality::Full => 0,
-        };
         let lacking = |needed: u64| WideTreeError::Memory {
-            items: bounds.len(),
+            items: count,
             needed,
             limit: config.memory_limit,
         };
-        let available = config.memory_limit.checked_sub(references_bytes + sorting);
-        let available = available.ok_or_else(|| lacking(references_bytes + sorting))?;
-        let whole = bounds
-            .iter()
-            .filter(|b| !b.is_empty())
-            .fold(Aabb::EMPTY, |whole, &b| whole.union(b));
+        let reference_bytes = |count: usize| (count * size_of::<Reference>()) as u64;
+        let mut preparing = reference_bytes(count);
+        if config.quality == Quality::Fast {
+            preparing += morton::bytes(count);
+        }
+        if preparing > config.memory_limit {
+            return Err(lacking(preparing));
+        }
+        let (whole, met) = Self::measure(items)?;
         let mut tree = Self {
             frame: Frame::new(&whole),
             nodes: Vec::new(),
@@ -209,32 +225,41 @@ impl WideTree {
             stats: WideTreeStats::default(),
             lanes: Lanes::detect(),
         };
-        if whole.is_empty() {
+        if met == 0 {
             return Ok(tree);
         }
-        let mut references: Vec<Reference> = bounds
-            .iter()
-            .enumerate()
-            .filter(|(_, b)| !b.is_empty())
-            .map(|(item, b)| Reference::new(PaddedBox::outward(&tree.frame, b), item as u32))
-            .collect();
+        let mut references = tree.references(items, met);
         let codes = match config.quality {
             Quality::Fast => morton::sort(&mut references),
             Quality::Full => Vec::new(),
         };
-        let piece = Piece::new(&mut references, &codes);
-        let budget = Budget {
+        let mut division = None;
+        if I::DIVISIBLE && config.quality == Quality::Full {
+            let root = PaddedBox::outward(&tree.frame, &whole);
+            let how = Division::new(items, Coordinates(tree.frame), &root);
+            let room = how.room(&references).min(link::MAX_ITEMS - met);
+            // Those that are added stand beside the others for a while.
+            let with_room = preparing + 2 * reference_bytes(room);
+            if room > 0 && with_room <= config.memory_limit {
+                preparing = with_room;
+                references.reserve_exact(room);
+                references.resize(met + room, Reference::BLANK);
+                division = Some(how);
+            }
+        }
+        let plan = Plan {
             leaf_size: config.leaf_size.clamp(1, LARGEST_LEAF),
+            division,
             // There is a second copy of nodes and items at the end, but no references any more.
-            bytes: available.min(config.memory_limit / 2),
+            bytes: (config.memory_limit - preparing).min(config.memory_limit / 2),
             taken: AtomicU64::new(0),
         };
-        let root = build::divide(piece, &budget);
+        let root = build::divide(Piece::new(&mut references, met, &codes), &plan);
         drop((references, codes));
         // A lone leaf needs a node, too.
         let size = root.bytes() + size_of::<WideNode>() as u64;
-        if size > budget.bytes {
-            return Err(lacking((2 * size).max(references_bytes + sorting + size)));
+        if size > plan.bytes {
+            return Err(lacking((2 * size).max(preparing + size)));
         }
         let built = build::collect(root);
         (tree.nodes, tree.items) = (built.nodes, built.items);
@@ -245,11 +270,50 @@ impl WideTree {
         });
         let leaves = links.filter(|&(link, used)| used && link::items(link).is_some());
         tree.stats.leaves = leaves.count() as u64;
-        tree.stats.items = tree.items.len() as u64;
+        tree.stats.items = met as u64;
+        tree.stats.references = tree.items.len() as u64;
         tree.stats.nodes = tree.nodes.len() as u64;
         let [nodes, items] = tree.bytes();
         tree.stats.bytes = (nodes.len() + items.len()) as u64;
         Ok(tree)
+    }
+
+    /// A box around all items, and how many of them are not empty.
+    fn measure<I: Items + ?Sized>(items: &I) -> Result<(Aabb, usize), WideTreeError> {
+        let unbounded = |item: &u32| !items.bounds(*item).is_bounded();
+        let indices = (0..items.count() as u32)
+            .into_par_iter()
+            .with_min_len(SHARE);
+        if let Some(item) = indices.clone().find_first(unbounded) {
+            return Err(WideTreeError::Unbounded(item as usize));
+        }
+        Ok(indices
+            .map(|item| items.bounds(item))
+            .filter(|bounds| !bounds.is_empty())
+            .fold(
+                || (Aabb::EMPTY, 0),
+                |(whole, count), bounds| (whole.union(bounds), count + 1),
+            )
+            .reduce(|| (Aabb::EMPTY, 0), |(a, m), (b, n)| (a.union(b), m + n)))
+    }
+
+    /// References to the items that are not empty; `met` is how many those are.
+    fn references<I: Items + ?Sized>(&self, items: &I, met: usize) -> Vec<Reference> {
+        let reference = |item: u32, bounds: &Aabb| {
+            Reference::new(PaddedBox::outward(&self.frame, bounds), item)
+        };
+        let indices = 0..items.count() as u32;
+        if met == items.count() {
+            let indices = indices.into_par_iter().with_min_len(SHARE);
+            return indices
+                .map(|item| reference(item, &items.bounds(item)))
+                .collect();
+        }
+        let all = indices.map(|item| (item, items.bounds(item)));
+        let with_extent = all.filter(|(_, bounds)| !bounds.is_empty());
+        with_extent
+            .map(|(item, bounds)| reference(item, &bounds))
+            .collect()
     }
 
     /// A box around all items.
@@ -271,6 +335,33 @@ impl WideTree {
             bytemuck::cast_slice(&self.nodes),
             bytemuck::cast_slice(&self.items),
         ]
+    }
+
+    /// The items, leaf by leaf. Places in this list are what a [`LeafVisitor`] is shown.
+    #[must_use]
+    pub fn items(&self) -> &[u32] {
+        &self.items
+    }
+
+    /// The places of the items of each leaf, in no particular order.
+    pub fn leaves(&self) -> impl Iterator<Item = std::ops::Range<usize>> + '_ {
+        self.nodes.iter().flat_map(|node| {
+            let used = node.boxes.planes[0].map(|x| x < f32::INFINITY);
+            let links = node.links.into_iter().zip(used);
+            links.filter_map(|(link, used)| link::items(link).filter(|_| used))
+        })
+    }
+
+    /// A point in the tree's coordinates, rounded to the nearest.
+    #[must_use]
+    pub fn local(&self, point: DVec3) -> [f32; 3] {
+        self.frame.point(point).to_array().map(|x| x as f32)
+    }
+
+    /// How the kernels run.
+    #[must_use]
+    pub const fn lanes(&self) -> Lanes {
+        self.lanes
     }
 
     /// The same tree with kernels that run as given. No answer depends on it.

@@ -52,7 +52,7 @@ impl PaddedBox {
         )
     }
 
-    fn rounded([x, y, z]: [f64; 3], [u, v, w]: [f64; 3]) -> Self {
+    pub(super) fn rounded([x, y, z]: [f64; 3], [u, v, w]: [f64; 3]) -> Self {
         Self {
             min: [round_down(x), round_down(y), round_down(z), 0.0],
             max: [round_up(u), round_up(v), round_up(w), 0.0],
@@ -95,6 +95,9 @@ impl PaddedBox {
 }
 
 impl Reference {
+    /// Room for one.
+    pub(super) const BLANK: Self = Self(PaddedBox::EMPTY);
+
     pub(super) fn new(mut bounds: PaddedBox, item: u32) -> Self {
         // Below 2^28 this is the pattern of an ordinary, tiny number: no NaN.
         bounds.min[3] = f32::from_bits(item);

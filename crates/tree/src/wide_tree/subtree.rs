@@ -8,6 +8,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use octray_kernels::Boxes8;
 
 use super::cost::{self, Choice, Costs};
+use super::divide::Division;
 use super::reference::PaddedBox;
 use super::split::Piece;
 use super::{WideNode, link};
@@ -24,8 +25,10 @@ pub(super) struct Part {
 
 /// How to build, and how much memory there is left for nodes and items.
 #[derive(Debug)]
-pub(super) struct Budget {
+pub(super) struct Plan<'a> {
     pub(super) leaf_size: u32,
+    /// How large references are cut in two, if they are.
+    pub(super) division: Option<Division<'a>>,
     pub(super) bytes: u64,
     pub(super) taken: AtomicU64,
 }
@@ -46,12 +49,12 @@ pub(super) struct Branch {
 }
 
 /// Working memory of a thread.
-#[derive(Debug, Default)]
-struct Arena {
+#[derive(Debug)]
+struct Arena<'a> {
     parts: Vec<Part>,
     /// Items in the order of the references.
     items: Vec<u32>,
-    leaf_size: u32,
+    plan: &'a Plan<'a>,
 }
 
 impl Part {
@@ -64,12 +67,12 @@ impl Part {
 }
 
 /// Builds the subtree over a piece of at least one reference, at most `height` splits high.
-pub(super) fn build(piece: Piece<'_>, height: u32, budget: &Budget) -> Branch {
-    let count = piece.references.len();
+pub(super) fn build(piece: Piece<'_>, height: u32, plan: &Plan<'_>) -> Branch {
+    let count = piece.slots();
     let mut arena = Arena {
         parts: Vec::with_capacity(2 * count - 1),
         items: Vec::with_capacity(count),
-        leaf_size: budget.leaf_size,
+        plan,
     };
     arena.parts.push(Part::BLANK);
     let costs = arena.divide(0, piece, height);
@@ -83,8 +86,8 @@ pub(super) fn build(piece: Piece<'_>, height: u32, budget: &Budget) -> Branch {
         nodes: Vec::new(),
         items: Vec::new(),
     };
-    let taken = budget.taken.fetch_add(branch.bytes, Ordering::Relaxed);
-    if taken + branch.bytes > budget.bytes {
+    let taken = plan.taken.fetch_add(branch.bytes, Ordering::Relaxed);
+    if taken + branch.bytes > plan.bytes {
         return branch;
     }
     branch.nodes.reserve_exact(nodes);
@@ -97,10 +100,10 @@ pub(super) fn build(piece: Piece<'_>, height: u32, budget: &Budget) -> Branch {
     branch
 }
 
-impl Arena {
+impl Arena<'_> {
     /// Makes the part of a piece, and all below it.
     fn divide(&mut self, part: usize, piece: Piece<'_>, height: u32) -> Costs {
-        if let [reference] = piece.references {
+        if let [reference] = piece.references() {
             let bounds = reference.0;
             self.parts[part] = Part {
                 bounds,
@@ -113,13 +116,18 @@ impl Arena {
         }
         let halves = self.parts.len();
         self.parts.extend([Part::BLANK; 2]);
-        let [low, high] = piece.split(largest(height - 1));
+        let [low, high] = piece.split(largest(height - 1), self.plan.division.as_ref());
         let first = self.divide(halves, low, height - 1);
         let second = self.divide(halves + 1, high, height - 1);
         let (low, high) = (&self.parts[halves], &self.parts[halves + 1]);
         let (bounds, count) = (low.bounds.union(&high.bounds), low.count + high.count);
-        let (costs, choice) =
-            cost::join(&first, &second, bounds.half_area(), count, self.leaf_size);
+        let (costs, choice) = cost::join(
+            &first,
+            &second,
+            bounds.half_area(),
+            count,
+            self.plan.leaf_size,
+        );
         self.parts[part] = Part {
             bounds,
             index: halves as u32,
@@ -170,7 +178,12 @@ impl Arena {
             low = self.parts[low].index as usize;
         }
         let place = self.parts[low].index as usize;
-        items.extend(&self.items[place..place + self.parts[part].count as usize]);
+        for &item in &self.items[place..place + self.parts[part].count as usize] {
+            // Two parts of an item are one again.
+            if !items[first..].contains(&item) {
+                items.push(item);
+            }
+        }
         link::leaf(first as u32, (items.len() - first) as u32)
     }
 

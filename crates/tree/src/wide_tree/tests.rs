@@ -430,3 +430,130 @@ fn what_cannot_be_built_is_said() {
         assert!(limit == 0 || build(limit - 1).is_err(), "{name}");
     }
 }
+
+/// Segments: the thinnest things that a box can be large for.
+struct Segments(Vec<[DVec3; 2]>);
+
+impl Items for Segments {
+    fn count(&self) -> usize {
+        self.0.len()
+    }
+
+    fn bounds(&self, item: u32) -> Aabb {
+        Aabb::from_points(self.0[item as usize])
+    }
+
+    const DIVISIBLE: bool = true;
+
+    fn halves(
+        &self,
+        item: u32,
+        coordinates: &Coordinates,
+        within: &Aabb,
+        planes: DVec3,
+    ) -> [[Aabb; 2]; 3] {
+        let [a, b] = self.0[item as usize].map(|p| coordinates.point(p));
+        let line = Ray::new(a, b - a);
+        let part = |region: Aabb| {
+            let span = region.inflated(1e-14).clip(&line);
+            let span = span.intersection(&Interval::new(0.0, 1.0));
+            let ends = [span.start, span.end].map(|t| line.at(t));
+            let part = Aabb::from_points(ends).inflated(1e-14);
+            if span.is_empty() { Aabb::EMPTY } else { part }
+        };
+        [0, 1, 2].map(|axis| {
+            let (mut low, mut high) = (*within, *within);
+            low.max[axis] = planes[axis];
+            high.min[axis] = planes[axis];
+            [low, high].map(part)
+        })
+    }
+}
+
+fn segments() -> Segments {
+    let mut r = Random(7, 0);
+    let long = |r: &mut Random| {
+        let a = r.point(1.0);
+        [a, a + (DVec3::new(1.0, 0.7, 0.4) + r.point(0.1)) * 0.8]
+    };
+    let mut all: Vec<_> = (0..2500).map(|_| long(&mut r)).collect();
+    // Along an axis and along planes; one many times; among small ones.
+    all.extend((0..200).map(|_| {
+        let a = r.point(1.0);
+        [a, a + DVec3::X]
+    }));
+    all.extend((0..200).map(|_| {
+        let a = r.point(1.0);
+        [a, a + DVec3::new(0.5, 0.5, 0.0)]
+    }));
+    all.extend([all[0]; 100]);
+    all.extend((0..2000).map(|_| {
+        let a = r.point(1.0);
+        [a, a + r.point(0.01)]
+    }));
+    Segments(all)
+}
+
+#[test]
+fn parts_in_leaves_cover_what_is_divided() {
+    let items = segments();
+    let build = |threads: usize, quality| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads);
+        let config = WideTreeConfig {
+            quality,
+            ..WideTreeConfig::default()
+        };
+        let pool = pool.build().unwrap();
+        pool.install(|| WideTree::over(&items, &config).unwrap())
+    };
+    let tree = build(1, Quality::Full);
+    assert!(build(3, Quality::Full).bytes() == tree.bytes());
+    let count = items.count() as u64;
+    assert_eq!(tree.stats.items, count);
+    assert!(tree.stats.references > count + count / 10 && tree.stats.references <= count * 13 / 10);
+    let once = build(1, Quality::Fast);
+    assert_eq!((once.stats.references, once.stats.items), (count, count));
+    let mut boxes = vec![Vec::new(); items.count()];
+    for node in &tree.nodes {
+        for (lane, &child) in node.links.iter().enumerate() {
+            let plane = |side: usize| node.boxes.planes[side][lane];
+            let Some(places) = link::items(child).filter(|_| plane(0) < f32::INFINITY) else {
+                continue;
+            };
+            let listed = &tree.items[places];
+            for (i, &item) in listed.iter().enumerate() {
+                assert!(!listed[..i].contains(&item), "twice in a leaf");
+                boxes[item as usize].push([0, 1, 2, 3, 4, 5].map(plane));
+            }
+        }
+    }
+    for (ends, boxes) in items.0.iter().zip(&boxes) {
+        for i in 0..=200 {
+            let point = ends[0] + (ends[1] - ends[0]) * (f64::from(i) / 200.0);
+            let p = tree.frame.point(point).to_array();
+            let holds = |b: &[f32; 6]| {
+                (0..3).all(|axis| {
+                    f64::from(b[axis]) <= p[axis] + 1e-15 && p[axis] - 1e-15 <= b[axis + 3].into()
+                })
+            };
+            assert!(boxes.iter().any(holds), "{ends:?} {i}");
+        }
+    }
+    // One by one, a line is shown fewer of them than if they were whole.
+    let config = WideTreeConfig {
+        leaf_size: 1,
+        ..WideTreeConfig::default()
+    };
+    let boxes: Vec<Aabb> = (0..count as u32).map(|item| items.bounds(item)).collect();
+    let shown = |tree: &WideTree| {
+        let (mut r, mut cost) = (Random(8, 0), WalkCost::default());
+        for _ in 0..300 {
+            let ray = Ray::new(r.point(1.0), r.point(1.0));
+            tree.all(&ray, Interval::ALL, &mut cost, |_| ());
+        }
+        cost.items
+    };
+    let parts = shown(&WideTree::over(&items, &config).unwrap());
+    let whole = shown(&WideTree::build(&boxes, &config).unwrap());
+    assert!(parts < whole, "{parts} {whole}");
+}

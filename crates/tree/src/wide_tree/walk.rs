@@ -1,12 +1,12 @@
 //! From front to back, leaving out what cannot matter any more.
 
-use std::ops::ControlFlow;
+use std::ops::{ControlFlow, Range};
 
-use octray_kernels::{BoxTest, Lanes, Scalar, Vector, dispatch};
+use octray_kernels::{Kernels, Lanes, Scalar, Vector, dispatch};
 use octray_math::{Interval, Ray};
 
-use super::frame::LocalRay;
-use super::{MAX_DEPTH, WideTree, link};
+use super::frame::LocalLine;
+use super::{WideTree, link};
 
 /// What walking costs.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -26,22 +26,59 @@ impl std::ops::AddAssign for WalkCost {
 
 /// A part of the tree that is still to be seen, and the parameter before which nothing in it
 /// counts.
-#[derive(Clone, Copy)]
-struct Pending {
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Pending {
     entry: f32,
     link: u32,
 }
 
-const NOTHING: Pending = Pending {
-    entry: 0.0,
-    link: 0,
-};
-/// A node leaves at most seven parts behind when the walk goes on into the eighth.
-const fn stack_for(depth: u32) -> usize {
-    7 * depth as usize + 8
+/// Long enough for all but contrived trees.
+const USUAL_STACK: usize = 128;
+
+/// What looks at the items of leaves.
+pub trait LeafVisitor {
+    /// Looks at the items that stand at `places` of [`WideTree::items`]; returns the local parameter
+    /// (see [`LocalLine`]) beyond which nothing matters any more, `s_max` or less.
+    fn leaf(
+        &mut self,
+        kernels: impl Kernels,
+        places: Range<usize>,
+        s_max: f32,
+    ) -> ControlFlow<(), f32>;
 }
-/// Deep enough for all but contrived trees; a larger stack would have to be cleared for every ray.
-const USUAL_DEPTH: u32 = 17;
+
+/// Shows the items of leaves one by one.
+struct Each<'a, F> {
+    items: &'a [u32],
+    line: &'a LocalLine,
+    end: f64,
+    shown: u64,
+    visit: F,
+}
+
+impl<F: FnMut(u32, f64) -> ControlFlow<(), f64>> LeafVisitor for Each<'_, F> {
+    #[inline(always)]
+    fn leaf(
+        &mut self,
+        _kernels: impl Kernels,
+        places: Range<usize>,
+        s_max: f32,
+    ) -> ControlFlow<(), f32> {
+        let before = self.end;
+        for &item in &self.items[places] {
+            self.shown += 1;
+            let found = (self.visit)(item, self.end)?;
+            if found < self.end {
+                self.end = found;
+            }
+        }
+        ControlFlow::Continue(if self.end < before {
+            self.line.upper(self.end)
+        } else {
+            s_max
+        })
+    }
+}
 
 impl WideTree {
     /// Shows `visit` every item that may matter to a search for the smallest `t` in `span`.
@@ -58,7 +95,7 @@ impl WideTree {
         mut visit: impl FnMut(u32, f64) -> f64,
     ) {
         // A search that never breaks off has no result of its own.
-        let _ = self.walk(ray, span, cost, |item, end| {
+        let _ = self.each(ray, span, cost, |item, end| {
             ControlFlow::Continue(visit(item, end))
         });
     }
@@ -71,7 +108,7 @@ impl WideTree {
         cost: &mut WalkCost,
         mut visit: impl FnMut(u32) -> bool,
     ) -> bool {
-        self.walk(ray, span, cost, |item, end| {
+        self.each(ray, span, cost, |item, end| {
             if visit(item) {
                 ControlFlow::Break(())
             } else {
@@ -83,98 +120,138 @@ impl WideTree {
 
     /// Shows `visit` every item whose box the line meets in `span`, and perhaps some others.
     pub fn all(&self, ray: &Ray, span: Interval, cost: &mut WalkCost, mut visit: impl FnMut(u32)) {
-        let _ = self.walk(ray, span, cost, |item, end| {
+        let _ = self.each(ray, span, cost, |item, end| {
             visit(item);
             ControlFlow::Continue(end)
         });
     }
 
     #[inline]
-    fn walk(
+    fn each(
         &self,
         ray: &Ray,
         span: Interval,
         cost: &mut WalkCost,
         visit: impl FnMut(u32, f64) -> ControlFlow<(), f64>,
     ) -> ControlFlow<()> {
-        if self.nodes.is_empty() || span.is_empty() {
+        if span.is_empty() {
             return ControlFlow::Continue(());
         }
-        let Some(local) = self.frame.ray(ray) else {
+        let Some(line) = self.line(ray) else {
             return ControlFlow::Continue(());
+        };
+        let mut each = Each {
+            items: &self.items,
+            line: &line,
+            end: span.end,
+            shown: 0,
+            visit,
         };
         let (mut usual, mut deep);
-        let stack: &mut [Pending] = if self.stats.depth <= USUAL_DEPTH {
-            usual = [NOTHING; stack_for(USUAL_DEPTH)];
+        let stack: &mut [Pending] = if self.stack_length() <= USUAL_STACK {
+            usual = [Pending::default(); USUAL_STACK];
             &mut usual
         } else {
-            deep = [NOTHING; stack_for(MAX_DEPTH)];
+            deep = vec![Pending::default(); self.stack_length()];
             &mut deep
         };
-        match self.lanes {
-            Lanes::Scalar => self.walk_with(Scalar, &local, span, stack, cost, visit),
+        let reach = [line.lower(span.start), line.upper(span.end)];
+        let flow = match self.lanes {
+            Lanes::Scalar => self.walk(Scalar, &line, reach, stack, cost, &mut each),
             Lanes::Vector(level) => dispatch!(level, simd =>
-                self.walk_with(Vector(simd), &local, span, stack, cost, visit)),
-        }
+                self.walk(Vector(simd), &line, reach, stack, cost, &mut each)),
+        };
+        cost.items += each.shown;
+        flow
     }
 
+    /// The line in the tree's coordinates; `None` for one that does not meet the tree.
+    #[must_use]
+    #[inline]
+    pub fn line(&self, ray: &Ray) -> Option<LocalLine> {
+        if self.nodes.is_empty() {
+            return None;
+        }
+        self.frame.ray(ray)
+    }
+
+    /// Parts of the tree that wait at a time, at most.
+    #[must_use]
+    #[inline]
+    pub const fn stack_length(&self) -> usize {
+        // A node leaves at most seven parts behind when the walk goes on into the eighth.
+        7 * self.stats.depth as usize + 8
+    }
+
+    /// Walks the line from leaf to leaf, about front to back, between two local parameters. To be
+    /// used inside `dispatch!` on [`WideTree::lanes`]. Counts nodes; items are the visitor's.
+    ///
+    /// `stack` is working memory, at least [`WideTree::stack_length`] long.
     #[inline(always)]
-    fn walk_with(
+    pub fn walk(
         &self,
-        test: impl BoxTest,
-        ray: &LocalRay,
-        span: Interval,
+        kernels: impl Kernels,
+        line: &LocalLine,
+        [s_min, mut s_max]: [f32; 2],
         stack: &mut [Pending],
         cost: &mut WalkCost,
-        mut visit: impl FnMut(u32, f64) -> ControlFlow<(), f64>,
+        visitor: &mut impl LeafVisitor,
     ) -> ControlFlow<()> {
-        let mut end = span.end;
-        let s_min = ray.lower(span.start);
-        let mut s_max = ray.upper(end);
         let mut entries = [0.0f32; 8];
-        stack[0] = Pending {
-            entry: f32::NEG_INFINITY,
-            link: link::node(0),
-        };
-        let mut height = 1;
-        while height > 0 {
-            height -= 1;
-            let part = stack[height];
-            if part.entry > s_max {
-                continue;
-            }
-            if let Some(items) = link::items(part.link) {
-                for &item in &self.items[items] {
-                    cost.items += 1;
-                    let found = visit(item, end)?;
-                    if found < end {
-                        end = found;
-                        s_max = ray.upper(end);
+        let mut height = 0;
+        let mut part = link::node(0);
+        loop {
+            if let Some(places) = link::items(part) {
+                s_max = visitor.leaf(kernels, places, s_max)?;
+            } else {
+                cost.nodes += 1;
+                let node = &self.nodes[part as usize];
+                let mut mask = kernels.test(&line.slab, &node.boxes, s_min, s_max, &mut entries);
+                if mask != 0 {
+                    let first = mask.trailing_zeros() as usize & 7;
+                    mask &= mask - 1;
+                    part = node.links[first];
+                    if mask == 0 {
+                        continue;
                     }
+                    // The nearest is next; the others wait, the nearer ones higher up.
+                    let mut nearest = Pending {
+                        entry: entries[first],
+                        link: part,
+                    };
+                    let bottom = height;
+                    while mask != 0 {
+                        let lane = mask.trailing_zeros() as usize & 7;
+                        mask &= mask - 1;
+                        let mut other = Pending {
+                            entry: entries[lane],
+                            link: node.links[lane],
+                        };
+                        if other.entry < nearest.entry {
+                            std::mem::swap(&mut other, &mut nearest);
+                        }
+                        let mut place = height;
+                        while place > bottom && stack[place - 1].entry < other.entry {
+                            stack[place] = stack[place - 1];
+                            place -= 1;
+                        }
+                        stack[place] = other;
+                        height += 1;
+                    }
+                    part = nearest.link;
+                    continue;
                 }
-                continue;
             }
-            cost.nodes += 1;
-            let node = &self.nodes[part.link as usize];
-            let mut mask = test.test(&ray.slab, &node.boxes, s_min, s_max, &mut entries);
-            // The nearest comes to lie on top.
-            let bottom = height;
-            while mask != 0 {
-                let lane = mask.trailing_zeros() as usize;
-                mask &= mask - 1;
-                let next = Pending {
-                    entry: entries[lane & 7],
-                    link: node.links[lane & 7],
-                };
-                let mut place = height;
-                while place > bottom && stack[place - 1].entry < next.entry {
-                    stack[place] = stack[place - 1];
-                    place -= 1;
+            loop {
+                if height == 0 {
+                    return ControlFlow::Continue(());
                 }
-                stack[place] = next;
-                height += 1;
+                height -= 1;
+                if stack[height].entry <= s_max {
+                    break;
+                }
             }
+            part = stack[height].link;
         }
-        ControlFlow::Continue(())
     }
 }

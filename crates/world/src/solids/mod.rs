@@ -7,6 +7,7 @@ mod interact;
 mod leaf;
 mod listed_cells;
 mod numbering;
+mod object_tree;
 mod operand_boxes;
 mod operand_cells;
 mod prepare;
@@ -25,6 +26,7 @@ use octray_tree::{CellTree, Node, Partition};
 pub(crate) use candidates::slack;
 use leaf::LeafView;
 pub(crate) use leaf::Leaves;
+use object_tree::ObjectTree;
 pub(crate) use roots::Scratch;
 use volumes::Volumes;
 
@@ -68,6 +70,8 @@ pub(crate) struct Solids {
     leaves: Leaves,
     /// The cells over the bounded objects; `None` for flat methods and without any.
     cells: Option<Partition>,
+    /// Where all objects are small and the method leaves it open.
+    objects: Option<ObjectTree>,
     /// What is tested before an object, by flat methods.
     volumes: Option<Volumes>,
     /// The leaf for what lies outside the cells: the unbounded objects, or everything.
@@ -139,6 +143,11 @@ impl Solids {
         });
     }
 
+    /// Whether every change of an object is a boundary that is seen.
+    pub(crate) fn shows_all(&self) -> bool {
+        !self.priorities_differ && !self.ranked.iter().any(|ranked| ranked.shell)
+    }
+
     /// Visits the leaves on the line front to back, each with its part of the line; `visit` returns
     /// the parameter beyond which nothing matters any more. Parts of neighbours overlap a little.
     fn visit_leaves(
@@ -153,6 +162,11 @@ impl Solids {
         let all = Interval::new(line.origin, line.end);
         if let Some(volumes) = &self.volumes {
             self.visit_volumes(volumes, line, all, limit, scratch, counters, &mut visit);
+            return;
+        }
+        if let Some(objects) = &self.objects {
+            let span = Interval::new(all.start, all.end.min(limit));
+            self.sweep_objects(objects, line, span, scratch, counters, &mut visit);
             return;
         }
         let outer = self.outer.map(|leaf| self.leaves.get(leaf));
@@ -249,7 +263,17 @@ impl Solids {
             return;
         };
         scratch.begin(self.surfaces.len() + self.meshes.len());
-        self.solids_in(line, leaf, line.origin, ranks, scratch, counters);
+        let start = line.origin;
+        if let Some(objects) = &self.objects {
+            let here = Interval::new(start, start);
+            self.sweep_objects(objects, line, here, scratch, counters, &mut |leaf| {
+                self.solids_in(line, leaf.view, start, ranks, leaf.scratch, leaf.counters);
+                start
+            });
+        } else {
+            let view = self.leaves.get(leaf);
+            self.solids_in(line, &view, start, ranks, scratch, counters);
+        }
         ranks.extend(&self.everywhere);
         ranks.sort_unstable();
         ranks.dedup();
@@ -264,6 +288,15 @@ impl Solids {
         counters: &mut Counters,
     ) -> Region {
         scratch.begin(self.surfaces.len() + self.meshes.len());
+        if let Some(objects) = &self.objects {
+            let here = Interval::new(s, s);
+            let mut region = Region::OUTSIDE;
+            self.sweep_objects(objects, line, here, scratch, counters, &mut |leaf| {
+                region = self.region_in(line, leaf.view, s, leaf.scratch, leaf.counters);
+                s
+            });
+            return region;
+        }
         let point = line.ray.at(s);
         let around = self.cells.as_ref().filter(|c| c.bounds().contains(point));
         let leaf = match around.map(|cells| cells.locate(point)) {
@@ -273,7 +306,10 @@ impl Solids {
             None => self.outer,
         };
         match leaf {
-            Some(leaf) => self.region_in(line, leaf, s, scratch, counters),
+            Some(leaf) => {
+                let view = self.leaves.get(leaf);
+                self.region_in(line, &view, s, scratch, counters)
+            }
             None => Region::OUTSIDE,
         }
     }
@@ -321,10 +357,11 @@ impl Solids {
     /// Memory by part.
     pub(crate) fn memory(&self) -> MemoryStats {
         let cells = self.cells.as_ref().map(|cells| &cells.stats().cells);
+        let objects = self.objects.as_ref();
         let meshes = || self.meshes.iter().map(|mesh| mesh.solid.triangles());
         MemoryStats {
             cells: cells.map_or(0, |stats| stats.node_bytes),
-            contents: self.leaves.list_bytes(),
+            contents: self.leaves.list_bytes() + objects.map_or(0, ObjectTree::list_bytes),
             expressions: self.leaves.expression_bytes(),
             surfaces: size_of_val(self.surfaces.as_slice()) as u64,
             faces: (size_of_val(self.faces.as_slice()) + size_of_val(self.face_owner.as_slice()))
@@ -333,6 +370,7 @@ impl Solids {
             triangle_cells: meshes().map(TriangleTree::cell_bytes).sum(),
             wide_trees: meshes()
                 .filter_map(TriangleTree::tree_stats)
+                .chain(objects.map(|objects| objects.tree().stats()))
                 .map(|stats| stats.bytes)
                 .sum(),
             instances: 0,

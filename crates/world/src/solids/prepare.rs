@@ -7,13 +7,14 @@ use octray_geometry::mesh::MeshSolid;
 use octray_geometry::surface::Surface;
 use octray_math::Aabb;
 use octray_scene::Scene;
-use octray_tree::{Division, Encoding, WideTreeConfig};
+use octray_tree::{Criteria, Division, Encoding, WideTreeConfig};
 use rayon::prelude::*;
 
 use super::candidates::{Candidate, Expressions, candidates};
 use super::cells::{Cells, Content, Draft, ScratchPool, cost};
 use super::divide::{Plan, check_list};
 use super::leaf::LeafWriter;
+use super::object_tree::ObjectTree;
 use super::operand_boxes::OperandBoxes;
 use super::volumes::Volumes;
 use super::{MeshSurface, Ranked, Solids};
@@ -113,11 +114,18 @@ impl Solids {
             .filter(Aabb::is_bounded)
             .fold(Aabb::EMPTY, Aabb::union);
         let object_bounds: Vec<Aabb> = candidates.iter().map(|c| c.bounds).collect();
+        // Of millions of objects all of this is large, and not needed any more.
+        drop((candidates, words, owners, rank_of));
         let volumes = match config.method {
             Method::Spheres => Some(Volumes::new(&object_bounds, true)),
             Method::Boxes => Some(Volumes::new(&object_bounds, false)),
             _ => None,
         };
+        // Unless someone wants cells.
+        let leaves_open = config.method == Method::Auto
+            && config.criteria == Criteria::default()
+            && list.is_none();
+        let small = leaves_open && meshes.is_empty() && ObjectTree::suits(&root, &object_bounds);
         let mut leaves = LeafWriter::default();
         let mut cells = None;
         let mut marking = None;
@@ -125,7 +133,7 @@ impl Solids {
         let mut whole = None;
         let operand_boxes =
             by_share.then(|| OperandBoxes::new(&operands, &face_owner, &object_bounds));
-        if let Some(division) = division.filter(|_| !bounds.is_empty()) {
+        if let Some(division) = division.filter(|_| !(small || bounds.is_empty())) {
             let restricting = Cells {
                 faces: &faces,
                 surfaces: &surfaces,
@@ -159,6 +167,13 @@ impl Solids {
         let outer = leaf_of(outer);
         let has_unbounded = object_bounds.iter().any(|b| !b.is_bounded());
         let leaves = leaves.finish();
+        let objects = match outer.filter(|_| small) {
+            Some(leaf) => {
+                let view = leaves.get(leaf);
+                Some(ObjectTree::build(&view, &object_bounds, &config.triangles)?)
+            }
+            None => None,
+        };
         let priorities_differ = ranked
             .windows(2)
             .any(|pair| pair[0].priority != pair[1].priority);
@@ -171,6 +186,7 @@ impl Solids {
             priorities_differ,
             leaves,
             cells,
+            objects,
             volumes,
             outer,
             whole,

@@ -6,7 +6,7 @@ use std::ops::Range;
 use super::Solids;
 use super::spans::Toggles;
 use super::sweep::Event;
-use super::volumes::VolumeHits;
+use super::volumes::LeafHits;
 use crate::Counters;
 use crate::beam::Runs;
 use crate::chords::{Chord, ChordScratch};
@@ -76,7 +76,7 @@ pub(crate) struct Scratch {
     pub(crate) runs: Runs,
     /// For the triangles of sheets.
     pub(crate) triangles: SearchMemory,
-    pub(super) volume_hits: VolumeHits,
+    pub(super) leaf_hits: LeafHits,
     pub(crate) chords: ChordScratch,
     /// Chords that are only counted.
     pub(crate) counted: Vec<Chord>,
@@ -208,7 +208,7 @@ impl Solids {
 
     /// The surface that the line departs from, whether it goes to the positive side, and for a mesh
     /// the triangle.
-    fn departed_surface(&self, line: &Line) -> Option<(u32, bool, Option<u32>)> {
+    pub(super) fn departed_surface(&self, line: &Line) -> Option<(u32, bool, Option<u32>)> {
         let departure = line.departure;
         if departure.face == FaceId::NONE {
             return None;

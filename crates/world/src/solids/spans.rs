@@ -9,7 +9,7 @@ use octray_geometry::FaceId;
 use octray_geometry::csg::{Term, operands, term};
 use octray_math::Interval;
 
-use super::leaf::LeafView;
+use super::leaf::{LeafObject, LeafView};
 use super::{Passage, Scratch, Solids};
 use crate::Counters;
 use crate::line::Line;
@@ -71,6 +71,26 @@ impl Solids {
                 });
             }
         }
+    }
+
+    /// Where the line first enters or leaves an object in `span`, wherever its boundary counts.
+    pub(super) fn first_toggle(
+        &self,
+        line: &Line,
+        view: &LeafView<'_>,
+        object: &LeafObject,
+        span: Interval,
+        scratch: &mut Scratch,
+        counters: &mut Counters,
+    ) -> Option<f64> {
+        scratch.toggles.all.clear();
+        let stretch = Stretch {
+            line,
+            words: view.expression(object),
+            span,
+        };
+        self.truth_along(&stretch, 0, scratch, counters);
+        scratch.toggles.all.first().map(|toggle| toggle.s)
     }
 
     /// Appends the changes of the term at `at` to the toggles, and returns its truth at the start.

@@ -277,36 +277,34 @@ impl Solids {
     pub(super) fn region_in(
         &self,
         line: &Line,
-        leaf: u32,
+        view: &LeafView<'_>,
         s: f64,
         scratch: &mut Scratch,
         counters: &mut Counters,
     ) -> Region {
-        let view = self.leaves.get(leaf);
-        self.place(&view, line, s, scratch, counters, None);
+        self.place(view, line, s, scratch, counters, None);
         let Scratch {
             negative, inside, ..
         } = scratch;
-        self.memberships(&view, negative, inside);
-        self.region(&view, inside)
+        self.memberships(view, negative, inside);
+        self.region(view, inside)
     }
 
     /// The ranks of the leaf's solids that hold the point at `s`, increasing.
     pub(super) fn solids_in(
         &self,
         line: &Line,
-        leaf: u32,
+        view: &LeafView<'_>,
         s: f64,
         ranks: &mut Vec<u32>,
         scratch: &mut Scratch,
         counters: &mut Counters,
     ) {
-        let view = self.leaves.get(leaf);
-        self.place(&view, line, s, scratch, counters, None);
+        self.place(view, line, s, scratch, counters, None);
         let Scratch {
             negative, inside, ..
         } = scratch;
-        self.memberships(&view, negative, inside);
+        self.memberships(view, negative, inside);
         let held = view.objects.iter().zip(inside.iter()).filter(|(_, i)| **i);
         ranks.extend(held.map(|(object, _)| object.rank));
         ranks.extend(view.base.checked_sub(1));

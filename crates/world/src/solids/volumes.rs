@@ -23,9 +23,14 @@ enum Volume {
 
 /// What matters on one line: working memory.
 #[derive(Debug, Default)]
-pub(super) struct VolumeHits {
-    objects: Vec<LeafObject>,
-    surfaces: Vec<u32>,
+pub(super) struct LeafHits {
+    pub(super) objects: Vec<LeafObject>,
+    pub(super) surfaces: Vec<u32>,
+}
+
+/// A box a little larger: more than rounding, less than anything that costs.
+pub(super) fn grown(bounds: &Aabb) -> Aabb {
+    bounds.inflated(bounds.diagonal() * CellTree::CONTENT_MARGIN)
 }
 
 impl Volumes {
@@ -38,8 +43,7 @@ impl Volumes {
             if !bounds.is_bounded() {
                 return Volume::Everything;
             }
-            // Larger than rounding, smaller than anything that costs.
-            let grown = bounds.inflated(bounds.diagonal() * CellTree::CONTENT_MARGIN);
+            let grown = grown(bounds);
             if spheres {
                 Volume::Sphere {
                     center: grown.center(),
@@ -88,10 +92,10 @@ impl Solids {
         let Some(leaf) = self.outer else { return };
         let whole = self.leaves.get(leaf);
         counters.cells += whole.objects.len() as u64;
-        let VolumeHits {
+        let LeafHits {
             mut objects,
             mut surfaces,
-        } = std::mem::take(&mut scratch.volume_hits);
+        } = std::mem::take(&mut scratch.leaf_hits);
         objects.clear();
         let met = |o: &&LeafObject| volumes.0[o.rank as usize].meets(&line.ray, &span);
         objects.extend(whole.objects.iter().filter(met));
@@ -102,6 +106,6 @@ impl Solids {
             scratch,
             counters,
         });
-        scratch.volume_hits = VolumeHits { objects, surfaces };
+        scratch.leaf_hits = LeafHits { objects, surfaces };
     }
 }

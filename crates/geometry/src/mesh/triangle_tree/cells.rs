@@ -152,7 +152,7 @@ impl TriangleCells {
         cost: &mut SearchCost,
         mut test: impl FnMut(u32, f64) -> f64,
     ) {
-        let SearchMemory { walk, mailbox } = memory;
+        let SearchMemory { walk, mailbox, .. } = memory;
         mailbox.begin(self.triangles);
         let mut end = span.end;
         let steps = self.partition.walk(ray, span, walk, |leaf, _| {

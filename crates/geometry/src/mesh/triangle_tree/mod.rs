@@ -1,21 +1,29 @@
 //! Triangles where they stand, and those that a line crosses.
 
+mod beam;
 mod cells;
+mod divide;
 mod membership;
+mod nearest;
+mod packed;
 mod search;
 mod volumes;
+mod wide;
 
-use std::ops::Range;
+use std::ops::{ControlFlow, Range};
 
 use octray_math::{Aabb, DVec3, Interval, Ray};
 use octray_tree::traversal::Steps;
-use octray_tree::{Partition, WideTree, WideTreeError, WideTreeStats};
+use octray_tree::{Partition, WideTreeError, WideTreeStats};
 
 use super::{TriangleHit, TriangleRay};
 use cells::TriangleCells;
+use divide::Triangles;
 pub use membership::TriangleMarks;
+pub use nearest::{NearestTriangle, TriangleQuery};
 pub use search::{SearchCost, SearchMemory, TriangleSearch};
 use volumes::ObjectVolumes;
+use wide::WideTriangles;
 
 /// Triangles of world coordinates with a structure that finds those on a line, or without one: the
 /// oracle.
@@ -32,7 +40,7 @@ pub struct TriangleTree {
 #[derive(Clone, Debug)]
 enum Index {
     All,
-    Wide(WideTree),
+    Wide(Box<WideTriangles>),
     Volumes(ObjectVolumes),
     Cells(Box<TriangleCells>),
 }
@@ -62,8 +70,7 @@ impl TriangleTree {
         all.index = match *search {
             TriangleSearch::All => Index::All,
             TriangleSearch::Wide(config) => {
-                let bounds: Vec<Aabb> = (0..count).map(|i| all.bounds(i)).collect();
-                Index::Wide(WideTree::build(&bounds, &config)?)
+                Index::Wide(Box::new(WideTriangles::build(&all.exact(), &config)?))
             }
             TriangleSearch::Spheres | TriangleSearch::Boxes => {
                 let ends = objects.iter().skip(1).copied().chain([count]);
@@ -103,27 +110,26 @@ impl TriangleTree {
         self.triangles.is_empty()
     }
 
+    #[inline]
+    fn exact(&self) -> Triangles<'_> {
+        Triangles {
+            positions: &self.positions,
+            triangles: &self.triangles,
+        }
+    }
+
     /// The corners of a triangle.
     #[must_use]
     #[inline]
     pub fn corners(&self, triangle: u32) -> [DVec3; 3] {
-        let [a, b, c] = self.triangles[triangle as usize];
-        let p = &self.positions;
-        [p[a as usize], p[b as usize], p[c as usize]]
+        self.exact().corners(triangle)
     }
 
     /// Whether two triangles lie in one plane, exactly: a line that leaves one for good cannot cross
     /// the other. Triangles that stand in a file twice do, and so do overlapping ones of one level.
     #[must_use]
     pub fn are_coplanar(&self, a: u32, b: u32) -> bool {
-        let coord = |p: DVec3| robust::Coord3D {
-            x: p.x,
-            y: p.y,
-            z: p.z,
-        };
-        let [p, q, r] = self.corners(a).map(coord);
-        let on_plane = |s: DVec3| robust::orient3d(p, q, r, coord(s)) == 0.0;
-        a == b || self.corners(b).into_iter().all(on_plane)
+        a == b || are_coplanar(self.corners(a), self.corners(b))
     }
 
     /// The box around a triangle.
@@ -141,8 +147,17 @@ impl TriangleTree {
     #[must_use]
     pub const fn tree_stats(&self) -> Option<&WideTreeStats> {
         match &self.index {
-            Index::Wide(tree) => Some(tree.stats()),
+            Index::Wide(wide) => Some(wide.tree.stats()),
             _ => None,
+        }
+    }
+
+    /// Bytes of the corners that stand with the wide octree, in the order of its leaves.
+    #[must_use]
+    pub fn packed_bytes(&self) -> u64 {
+        match &self.index {
+            Index::Wide(wide) => wide.packed_bytes(),
+            _ => 0,
         }
     }
 
@@ -184,7 +199,7 @@ impl TriangleTree {
     pub fn tree_words(&self) -> Box<dyn Iterator<Item = u32> + '_> {
         match &self.index {
             Index::All | Index::Volumes(_) => Box::new(std::iter::empty()),
-            Index::Wide(tree) => Box::new(tree.bytes().into_iter().flat_map(|part| {
+            Index::Wide(wide) => Box::new(wide.tree.bytes().into_iter().flat_map(|part| {
                 let (words, _) = part.as_chunks();
                 words.iter().map(|&word| u32::from_ne_bytes(word))
             })),
@@ -211,8 +226,9 @@ impl TriangleTree {
     /// Shows `visit` the triangles that the line crosses in `span` (ends included), until nothing
     /// better can come: `visit(triangle, hit, end)` returns the new end of the span, or `end`.
     ///
-    /// All triangles up to the final end are shown, those at the end itself too, each once and in no
-    /// particular order. `cost.walk.items` counts triangles tested.
+    /// All triangles up to the final end are shown, those at the end itself too, in no particular
+    /// order; one that stands in several leaves of the wide octree may be shown more than once.
+    /// `cost.walk.items` counts triangles tested.
     #[inline]
     pub fn closest(
         &self,
@@ -222,6 +238,18 @@ impl TriangleTree {
         cost: &mut SearchCost,
         mut visit: impl FnMut(u32, &TriangleHit, f64) -> f64,
     ) {
+        if let Index::Wide(wide) = &self.index {
+            // A search that never breaks off has no result of its own.
+            let _ = wide.crossed(
+                self.exact(),
+                ray,
+                span,
+                memory,
+                cost,
+                |triangle, hit, end| ControlFlow::Continue(visit(triangle, hit, end)),
+            );
+            return;
+        }
         let line = TriangleRay::new(ray);
         let test = |triangle: u32, end: f64| match line.intersect(self.corners(triangle)) {
             Some(hit) if span.start <= hit.t && hit.t <= end => {
@@ -231,9 +259,77 @@ impl TriangleTree {
             }
             _ => end,
         };
-        match &self.index {
-            Index::Wide(tree) => tree.closest(ray, span, &mut cost.walk, test),
-            _ => self.propose(ray, span, memory, cost, test),
+        self.propose(ray, span, memory, cost, test);
+    }
+
+    /// Gives `answer` the nearest triangle on each line, with the line's index and what the search
+    /// cost, each index once.
+    pub fn nearest(
+        &self,
+        queries: &[TriangleQuery],
+        memory: &mut SearchMemory,
+        mut answer: impl FnMut(usize, Option<NearestTriangle>, SearchCost),
+    ) {
+        if let Index::Wide(wide) = &self.index {
+            wide.nearest(self.exact(), queries, memory, answer);
+            return;
+        }
+        for (index, query) in queries.iter().enumerate() {
+            let mut cost = SearchCost::default();
+            let mut best: Option<NearestTriangle> = None;
+            self.closest(
+                &query.ray,
+                query.span,
+                memory,
+                &mut cost,
+                |triangle, hit, end| {
+                    let found = NearestTriangle {
+                        t: hit.t,
+                        triangle,
+                        entering: hit.entering,
+                    };
+                    let left = |from| self.are_coplanar(from, triangle);
+                    if hit.t > query.span.start
+                        && found.is_before(best.as_ref())
+                        && !query.departed.is_some_and(left)
+                    {
+                        best = Some(found);
+                    }
+                    best.map_or(end, |best| best.t)
+                },
+            );
+            answer(index, best, cost);
+        }
+    }
+
+    /// Gives `answer` whether `counts` is true of any triangle on each line, with the line's index and
+    /// what the search cost, each index once. `counts` gets the line's index, the triangle, and where
+    /// the line crosses it; it is asked only about what the query leaves open.
+    pub fn any_of(
+        &self,
+        queries: &[TriangleQuery],
+        memory: &mut SearchMemory,
+        mut counts: impl FnMut(usize, u32, &TriangleHit) -> bool,
+        mut answer: impl FnMut(usize, bool, SearchCost),
+    ) {
+        if let Index::Wide(wide) = &self.index {
+            wide.any_of(self.exact(), queries, memory, counts, answer);
+            return;
+        }
+        for (index, query) in queries.iter().enumerate() {
+            let mut cost = SearchCost::default();
+            let met = self.any(
+                &query.ray,
+                query.span,
+                memory,
+                &mut cost,
+                |triangle, hit| {
+                    query.counts(hit.t)
+                        && !query.leaves(triangle, &self.exact())
+                        && counts(index, triangle, hit)
+                },
+            );
+            answer(index, met, cost);
         }
     }
 
@@ -247,14 +343,23 @@ impl TriangleTree {
         cost: &mut SearchCost,
         mut visit: impl FnMut(u32, &TriangleHit) -> bool,
     ) -> bool {
+        if let Index::Wide(wide) = &self.index {
+            let visit = |triangle, hit: &TriangleHit, end| {
+                if visit(triangle, hit) {
+                    ControlFlow::Break(())
+                } else {
+                    ControlFlow::Continue(end)
+                }
+            };
+            return wide
+                .crossed(self.exact(), ray, span, memory, cost, visit)
+                .is_break();
+        }
         let line = TriangleRay::new(ray);
         let mut test = |triangle: u32| {
             line.intersect(self.corners(triangle))
                 .is_some_and(|hit| span.contains(hit.t) && visit(triangle, &hit))
         };
-        if let Index::Wide(tree) = &self.index {
-            return tree.any(ray, span, &mut cost.walk, test);
-        }
         let mut found = false;
         self.propose(ray, span, memory, cost, |triangle, end| {
             found = found || test(triangle);
@@ -274,10 +379,23 @@ impl TriangleTree {
         cost: &mut SearchCost,
         mut visit: impl FnMut(u32, &TriangleHit),
     ) {
+        let once = self
+            .tree_stats()
+            .is_none_or(|tree| tree.references == tree.items);
+        let mut found: Vec<(u32, TriangleHit)> = Vec::new();
         self.closest(ray, span, memory, cost, |triangle, hit, end| {
-            visit(triangle, hit);
+            if once {
+                visit(triangle, hit);
+            } else {
+                found.push((triangle, *hit));
+            }
             end
         });
+        found.sort_unstable_by_key(|(triangle, _)| *triangle);
+        found.dedup_by_key(|(triangle, _)| *triangle);
+        for (triangle, hit) in &found {
+            visit(*triangle, hit);
+        }
     }
 
     /// Shows `test` the triangles that may lie on the line in `span`, each once; it returns the new
@@ -313,8 +431,20 @@ impl TriangleTree {
     pub fn overlaps(&self, region: &Aabb) -> bool {
         let near = |triangle: u32| self.bounds(triangle).overlaps(region);
         match &self.index {
-            Index::Wide(tree) => tree.any_overlapping(region, near),
+            Index::Wide(wide) => wide.tree.any_overlapping(region, near),
             _ => (0..self.triangles.len() as u32).any(near),
         }
     }
+}
+
+/// Whether two triangles lie in one plane, exactly.
+fn are_coplanar(a: [DVec3; 3], b: [DVec3; 3]) -> bool {
+    let coord = |p: DVec3| robust::Coord3D {
+        x: p.x,
+        y: p.y,
+        z: p.z,
+    };
+    let [p, q, r] = a.map(coord);
+    let on_plane = |s: DVec3| robust::orient3d(p, q, r, coord(s)) == 0.0;
+    b.into_iter().all(on_plane)
 }

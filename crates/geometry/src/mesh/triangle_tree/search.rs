@@ -1,7 +1,10 @@
 //! How triangles are searched, what that needs and what it costs.
 
 use octray_tree::traversal::Steps;
-use octray_tree::{Criteria, Division, LvsiTable, WalkCost, WalkMemory, WideTreeConfig};
+use octray_tree::wide_tree::PendingBeam;
+use octray_tree::{
+    Criteria, Division, LvsiTable, Pending, WalkCost, WalkMemory, WideTree, WideTreeConfig,
+};
 
 use crate::Membership;
 
@@ -40,17 +43,49 @@ pub struct SearchCost {
     pub mailbox: u64,
 }
 
+impl SearchCost {
+    /// The part of one of so many lines that travelled together in the wide octree.
+    pub(super) const fn share(&self, index: usize, of: usize) -> Self {
+        let (index, of) = (index as u64, of as u64);
+        let mut part = *self;
+        part.walk.nodes = self.walk.nodes / of + (index < self.walk.nodes % of) as u64;
+        part.walk.items = self.walk.items / of + (index < self.walk.items % of) as u64;
+        part
+    }
+}
+
 /// Working memory of searches, kept from ray to ray by each thread.
 #[derive(Clone, Debug, Default)]
 pub struct SearchMemory {
     pub(super) walk: WalkMemory,
     pub(super) mailbox: Mailbox,
+    stack: Vec<Pending>,
+    beam_stack: Vec<PendingBeam>,
 }
 
 impl SearchMemory {
     /// The rays to come are others than those that entered together last.
     pub const fn leave(&mut self) {
         self.walk.leave();
+    }
+
+    /// A stack for walks of this tree.
+    #[inline]
+    pub(super) fn stack(&mut self, tree: &WideTree) -> &mut [Pending] {
+        if self.stack.len() < tree.stack_length() {
+            self.stack.resize(tree.stack_length(), Pending::default());
+        }
+        &mut self.stack
+    }
+
+    /// A stack for beams through this tree.
+    #[inline]
+    pub(super) fn beam_stack(&mut self, tree: &WideTree) -> &mut [PendingBeam] {
+        if self.beam_stack.len() < tree.stack_length() {
+            let length = tree.stack_length();
+            self.beam_stack.resize(length, PendingBeam::default());
+        }
+        &mut self.beam_stack
     }
 }
 
