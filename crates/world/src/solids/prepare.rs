@@ -114,6 +114,8 @@ impl Solids {
             .filter(Aabb::is_bounded)
             .fold(Aabb::EMPTY, Aabb::union);
         let object_bounds: Vec<Aabb> = candidates.iter().map(|c| c.bounds).collect();
+        // Of millions of objects all of this is large, and not needed any more.
+        drop((candidates, words, owners, rank_of));
         let volumes = match config.method {
             Method::Spheres => Some(Volumes::new(&object_bounds, true)),
             Method::Boxes => Some(Volumes::new(&object_bounds, false)),
