@@ -255,7 +255,12 @@ fn distinct(specimens: Vec<Specimen>, full: bool) -> Vec<Subject> {
             specimen,
         }
     };
-    let all: Vec<Subject> = specimens.into_par_iter().map(by_brute_force).collect();
+    // One by one: a few take as long as all others together.
+    let all: Vec<Subject> = specimens
+        .into_par_iter()
+        .with_max_len(1)
+        .map(by_brute_force)
+        .collect();
     let mut subjects: Vec<Subject> = Vec::new();
     for subject in all {
         let name = &subject.specimen.name;
