@@ -1,5 +1,6 @@
 //! Many small solids, whose tree of boxes `auto` chooses instead of cells: brute force is the oracle.
 
+#[expect(dead_code, reason = "shared with the suite of all methods")]
 mod answers;
 
 use std::sync::Arc;
