@@ -32,7 +32,7 @@ fn thing() -> impl Strategy<Value = Thing> {
         1..=4u8,
         any::<bool>(),
         0..3i32,
-        odd.clone(),
+        odd,
         odd,
     )
         .prop_map(

@@ -38,6 +38,9 @@ pub struct TriangleTree {
     index: Index,
 }
 
+/// So many triangles are tested one by one.
+const FEW: u32 = 4;
+
 /// What finds the triangles on a line; see [`TriangleSearch`].
 #[derive(Clone, Debug)]
 enum Index {
@@ -71,6 +74,8 @@ impl TriangleTree {
         let count = all.len() as u32;
         all.index = match *search {
             TriangleSearch::All => Index::All,
+            // A floor of two triangles is tested sooner than a tree is entered.
+            TriangleSearch::Wide(_) if count <= FEW => Index::All,
             TriangleSearch::Wide(config) => {
                 Index::Wide(Box::new(WideTriangles::build(&all.exact(), &config)?))
             }
