@@ -134,7 +134,7 @@ def test_json_is_one_object_and_alone(octray_command: Octray, cube: Path) -> Non
     assert set(report["phases"]) == {"import_s", "build_s", "render_s", "write_s"}
     assert report["rays"]["primary"] == 1200
     assert report["tests_per_ray"]["triangles"] >= 0
-    assert set(report["trees"]) == {"cells", "membership", "triangles", "wide"}
+    assert set(report["trees"]) == {"cells", "instances", "membership", "triangles", "wide"}
     assert report["memory"]["peak_bytes"] is None or report["memory"]["peak_bytes"] > 1e6
     assert report["warnings"] == report["errors"] == []
     assert report["outputs"][0]["path"] == "cube.png"

@@ -102,10 +102,13 @@ def test_memory_is_told_by_part_and_the_table_by_what_it_holds() -> None:
     assert memory["triangles"] == memory["wide_trees"] == 0
     assert memory["building"] == stats["trees"]["cells"]["peak_bytes"] > 0
     mesh = octray.Scene()
-    mesh.add_mesh(([(0, 0, 0), (1, 0, 0), (0, 1, 0)], [(0, 1, 2)]))
-    memory = mesh.stats()["memory"]
-    assert memory["triangles"] == 3 * 24 + 12
-    assert memory["wide_trees"] == mesh.stats()["trees"]["wide"]["bytes"]
+    corners = [(0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1), (1, 1, 0), (1, 0, 1)]
+    triangles = [(0, 1, 2), (0, 1, 3), (1, 2, 4), (0, 2, 3), (1, 3, 5), (2, 3, 4)]
+    mesh.add_mesh((corners, triangles))
+    memory, wide = mesh.stats()["memory"], mesh.stats()["trees"]["wide"]
+    assert memory["triangles"] == 6 * 24 + 6 * 12
+    # Nine floats for each reference to a triangle, and eight at the end.
+    assert memory["wide_trees"] == wide["bytes"] + 4 * (9 * wide["references"] + 8)
 
 
 def fan() -> octray.Scene:
