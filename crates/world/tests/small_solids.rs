@@ -137,7 +137,8 @@ proptest! {
         let rays: Vec<Ray> = rays.into_iter().map(|(from, to)| Ray::new(from, to - from)).collect();
         let scene = scene(&things, variety);
         let by_tree = world(&scene, Method::Auto);
-        prop_assert!(by_tree.stats().cells.is_none(), "cells are not what is tested here");
+        // Discs have no bounds, and of things without any there may be few only.
+        prop_assert!(sheets || by_tree.stats().cells.is_none(), "cells are not tested here");
         let found = answers(&by_tree, &rays);
         let expected = answers(&world(&scene, Method::Brute), &rays);
         prop_assert_eq!(found.closest, expected.closest);
