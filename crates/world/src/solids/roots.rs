@@ -72,6 +72,8 @@ pub(crate) struct Scratch {
     pub(super) toggles: Toggles,
     pub(super) inside: Vec<bool>,
     pub(super) inside_after: Vec<bool>,
+    /// Surfaces of a leaf and the objects that name them.
+    pub(super) naming: Vec<(u32, u32)>,
     pub(super) walk: WalkMemory,
     pub(crate) runs: Runs,
     pub(crate) triangle_slice: crate::triangle_slice::TriangleSlice,

@@ -13,6 +13,10 @@ use super::{LeafVisit, Scratch, Solids};
 use crate::line::Line;
 use crate::{Counters, Region};
 
+/// In leaves of more objects only those that name a crossed surface are asked again, which takes a
+/// list of who does.
+const MANY_OBJECTS: usize = 64;
+
 /// A surface is crossed.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Event {
@@ -182,9 +186,14 @@ impl Solids {
             negative,
             inside,
             inside_after,
+            naming,
             ..
         } = scratch;
         self.memberships(view, negative, inside);
+        let many = view.objects.len() > MANY_OBJECTS;
+        if many {
+            self.who_names(view, naming);
+        }
         for group in events.chunk_by(|a, b| a.s == b.s) {
             if group[0].s > limit {
                 break;
@@ -192,7 +201,19 @@ impl Solids {
             for event in group {
                 negative[event.surface as usize] ^= true;
             }
-            self.memberships(view, negative, inside_after);
+            if many {
+                inside_after.clone_from(inside);
+                for event in group {
+                    let first = naming.partition_point(|(surface, _)| *surface < event.surface);
+                    let own = naming[first..].iter();
+                    for (_, index) in own.take_while(|(surface, _)| *surface == event.surface) {
+                        let object = &view.objects[*index as usize];
+                        inside_after[*index as usize] = self.is_inside(view, object, negative);
+                    }
+                }
+            } else {
+                self.memberships(view, negative, inside_after);
+            }
             if inside != inside_after {
                 limit = limit.min(visit(&Change {
                     solids: self,
@@ -289,10 +310,25 @@ impl Solids {
 
     fn memberships(&self, view: &LeafView<'_>, negative: &[bool], inside: &mut Vec<bool>) {
         inside.clear();
-        for object in view.objects {
-            let truth = |face| self.truth(negative, face);
-            inside.push(evaluate(view.expression(object), &truth));
+        let objects = view.objects.iter();
+        inside.extend(objects.map(|object| self.is_inside(view, object, negative)));
+    }
+
+    fn is_inside(&self, view: &LeafView<'_>, object: &LeafObject, negative: &[bool]) -> bool {
+        evaluate(view.expression(object), &|face| self.truth(negative, face))
+    }
+
+    /// Which of the leaf's objects name a surface, as pairs in the order of the surfaces: only these
+    /// can change where it is crossed.
+    fn who_names(&self, view: &LeafView<'_>, naming: &mut Vec<(u32, u32)>) {
+        naming.clear();
+        for (index, object) in view.objects.iter().enumerate() {
+            let surface = |face: FaceId| self.faces[face.0 as usize].surface.0;
+            let faces = csg::faces(view.expression(object));
+            naming.extend(faces.map(|face| (surface(face), index as u32)));
         }
+        naming.sort_unstable();
+        naming.dedup();
     }
 
     /// The region, given which of the leaf's objects one is in.
