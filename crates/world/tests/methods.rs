@@ -166,3 +166,23 @@ fn odd_scenes_end_with_the_right_answers() {
         &rays_about(DVec3::ZERO, 1.0),
     );
 }
+
+#[test]
+fn what_lies_at_the_very_end_of_a_ray_does_not_stop_it() {
+    let slab = |z: f64| Solid::cuboid(DVec3::new(-1.0, -1.0, z), DVec3::new(1.0, 1.0, z + 0.5));
+    let solids = [0.0, 1.0].map(|z| (slab(z).expect("valid"), 0));
+    for method in methods() {
+        let world = world(&solids, method);
+        let down = RayQuery::new(Ray::new(DVec3::new(0.25, 0.5, 0.75), DVec3::NEG_Z));
+        let (mut hits, mut blocked) = (Vec::new(), Vec::new());
+        world.closest(&[down], &mut hits, &mut Counters::default());
+        // From the lower slab's top to just the upper one's bottom, and beyond.
+        let up = [0.5, 0.75].map(|t_max| RayQuery {
+            ray: Ray::new(DVec3::new(0.25, 0.5, 0.5), DVec3::Z),
+            t_max,
+            departure: hits[0].departure(true),
+        });
+        world.occluded(&up, &mut blocked, &mut Counters::default());
+        assert_eq!(blocked, [false, true], "{method}");
+    }
+}

@@ -167,9 +167,14 @@ impl Solids {
     ) -> bool {
         let mut changes = false;
         let (Some(objects), Some(leaf)) = (&self.objects, self.outer) else {
-            self.sweep_line(line, f64::INFINITY, scratch, counters, |_| {
-                changes = true;
-                f64::NEG_INFINITY
+            self.sweep_line(line, f64::INFINITY, scratch, counters, |change| {
+                // What lies at the very end does not count.
+                changes |= change.s() < line.end;
+                if changes {
+                    f64::NEG_INFINITY
+                } else {
+                    f64::INFINITY
+                }
             });
             return changes;
         };

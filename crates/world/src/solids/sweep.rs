@@ -64,6 +64,11 @@ pub(crate) struct Passage {
 }
 
 impl Change<'_> {
+    /// In the line's parameter.
+    pub(crate) fn s(&self) -> f64 {
+        self.group[0].s
+    }
+
     fn truth(&self, face: FaceId) -> bool {
         self.solids.truth(self.negative, face)
     }
