@@ -20,6 +20,7 @@ mod slice;
 mod solids;
 mod start;
 mod surfaces;
+mod treelets;
 mod triangle_slice;
 mod world;
 
@@ -32,6 +33,7 @@ pub use octray_geometry::membership::MarkerStats;
 pub use octray_geometry::membership::shells::StepCounts;
 pub use query::{Counters, Departure, Hit, RayQuery, Region, SurfaceHit};
 pub use surfaces::{NearCoincidence, SurfaceReport};
+pub use treelets::{OcclusionSearch, Search, Step, TreeletError, Treelets};
 pub use world::{World, WorldConfig, WorldError, WorldStats};
 
 pub use octray_geometry::Membership;

@@ -79,7 +79,7 @@ impl World {
     }
 
     /// The nearest boundary of a copy, or the one given if it is nearer.
-    fn nearest_copy(
+    pub(crate) fn nearest_copy(
         &self,
         line: &Line,
         mut best: Option<Interface>,

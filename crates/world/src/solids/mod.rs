@@ -93,6 +93,8 @@ pub(crate) struct Solids {
 
 /// A leaf on a line.
 struct LeafVisit<'a> {
+    /// Its index among the leaves of the cells; `None` for all others.
+    index: Option<u32>,
     view: &'a LeafView<'a>,
     /// The part of the line that counts in it.
     span: Interval,
@@ -143,6 +145,26 @@ impl Solids {
         });
     }
 
+    /// The same for some of the leaves: `has` is asked for the index among those of the cells, `None`
+    /// for any other.
+    pub(crate) fn sweep_some(
+        &self,
+        line: &Line,
+        limit: f64,
+        has: impl Fn(Option<u32>) -> bool,
+        scratch: &mut Scratch,
+        counters: &mut Counters,
+        mut visit: impl FnMut(&Change<'_>) -> f64,
+    ) {
+        self.visit_leaves(line, limit, scratch, counters, |leaf| {
+            if has(leaf.index) {
+                self.sweep(line, leaf, &mut visit)
+            } else {
+                leaf.limit
+            }
+        });
+    }
+
     /// Whether every change of an object is a boundary that is seen.
     pub(crate) fn shows_all(&self) -> bool {
         !self.priorities_differ && !self.ranked.iter().any(|ranked| ranked.shell)
@@ -177,6 +199,7 @@ impl Solids {
              counters: &mut Counters,
              visit: &mut dyn FnMut(LeafVisit<'_>) -> f64| match &outer {
                 Some(view) if part.start <= limit && !part.is_empty() => visit(LeafVisit {
+                    index: None,
                     view,
                     span: part,
                     limit,
@@ -206,6 +229,7 @@ impl Solids {
             let mut memory = std::mem::take(&mut scratch.walk);
             let steps = cells.walk(&line.ray, within, &mut memory, |leaf, span| {
                 limit = visit(LeafVisit {
+                    index: Some(leaf),
                     view: &self.leaves.get(leaf),
                     span,
                     limit,

@@ -142,6 +142,7 @@ impl Solids {
             let limit = self.sweep(
                 line,
                 LeafVisit {
+                    index: None,
                     view: &view.only(&hits.objects, &mut hits.surfaces, &self.faces),
                     span: Interval::new(s, s),
                     limit: f64::INFINITY,
@@ -217,6 +218,7 @@ impl Solids {
         } = std::mem::take(&mut scratch.leaf_hits);
         objects.gather(&whole, line, span, counters, &mut met);
         let limit = visit(LeafVisit {
+            index: None,
             view: &whole.only(&met, &mut surfaces, &self.faces),
             span,
             limit: f64::INFINITY,

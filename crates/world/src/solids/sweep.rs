@@ -170,6 +170,7 @@ impl Solids {
         visit: &mut impl FnMut(&Change<'_>) -> f64,
     ) -> f64 {
         let LeafVisit {
+            index: _,
             view,
             span,
             mut limit,

@@ -100,6 +100,7 @@ impl Solids {
         let met = |o: &&LeafObject| volumes.0[o.rank as usize].meets(&line.ray, &span);
         objects.extend(whole.objects.iter().filter(met));
         visit(LeafVisit {
+            index: None,
             view: &whole.only(&objects, &mut surfaces, &self.faces),
             span,
             limit,
