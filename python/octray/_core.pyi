@@ -67,6 +67,7 @@ __version__: str
 
 _Vector: TypeAlias = Iterable[float]
 _Color: TypeAlias = str | Iterable[float]
+_Side: TypeAlias = Literal["front", "back", "left", "right", "top", "bottom", "iso"]
 _Path: TypeAlias = str | os.PathLike[str]
 _Point: TypeAlias = tuple[float, float, float]
 _Bounds: TypeAlias = tuple[_Point, _Point]
@@ -410,6 +411,7 @@ class Scene:
     @background.setter
     def background(self, value: float | _Color | Sequence[_Color], /) -> None: ...
     def view_all(self) -> None: ...
+    def view_from(self, side: _Side) -> None: ...
     @property
     def names(self) -> list[str]: ...
     @property

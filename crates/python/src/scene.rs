@@ -4,7 +4,6 @@ use std::path::PathBuf;
 
 use numpy::PyArrayDyn;
 use octray::geometry::Sheet;
-use octray::import::dress;
 use octray::scene::{self, SceneBuilder, SceneError, Settings, Shape};
 use octray::world::Method;
 use pyo3::exceptions::{PyTypeError, PyValueError};
@@ -242,10 +241,16 @@ impl Scene {
 
     /// Puts a camera where it sees everything, from the front and a little from above.
     fn view_all(&mut self) -> PyResult<()> {
-        let camera = dress::view_scene(self.builder.so_far()).ok_or_else(|| {
-            PyValueError::new_err("there is nothing bounded in the scene to look at")
-        })?;
-        self.set_camera(&Camera::new(camera));
+        let camera = crate::camera::view_all(self.builder.so_far())?;
+        self.set_camera(&camera);
+        Ok(())
+    }
+
+    /// Puts a camera that sees everything in a parallel projection from a side: "front", "back",
+    /// "left", "right", "top", "bottom" or "iso".
+    fn view_from(&mut self, side: &str) -> PyResult<()> {
+        let camera = crate::camera::view_from(self.builder.so_far(), side)?;
+        self.set_camera(&camera);
         Ok(())
     }
 

@@ -34,6 +34,11 @@ if TYPE_CHECKING:
     "-o", "--output", metavar="FILE", help="Picture, .png or .exr; - is standard output (PNG)."
 )
 @picture_options
+@click.option(
+    "--view-from",
+    type=click.Choice(["front", "back", "left", "right", "top", "bottom", "iso"]),
+    help="Show everything from this side, in a parallel projection.",
+)
 @accel_option
 @tree_options
 @click.option(
@@ -172,9 +177,12 @@ class _Run:
                 quiet=self.options["quiet"],
             )
         self.report.add_messages(scene.diagnostics)
-        if self.options["viewall"]:
+        if self.options["viewall"] or self.options["view_from"]:
             try:
-                scene.view_all()
+                if self.options["view_from"]:
+                    scene.view_from(self.options["view_from"])
+                else:
+                    scene.view_all()
             except ValueError as error:
                 raise FailureError(f"{self.path}: {error}", Exit.SCENE) from error
         return scene
