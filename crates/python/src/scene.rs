@@ -2,19 +2,19 @@
 
 use std::path::PathBuf;
 
-use numpy::PyArrayDyn;
+use numpy::{PyArrayDyn, PyReadonlyArray1};
 use octray::geometry::Sheet;
 use octray::scene::{self, SceneBuilder, SceneError, Settings, Shape};
 use octray::world::Method;
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
-use pyo3::types::{PyDict, PyList};
+use pyo3::types::{PyBytes, PyDict, PyList};
 
 use crate::background;
 use crate::building::Building;
 use crate::camera::Camera;
 use crate::cells::{self, Cells};
-use crate::convert::{Triple, vector};
+use crate::convert::{Triple, value_error, vector};
 use crate::diagnostics::{Diagnostic, invalid_scene};
 use crate::image::Image;
 use crate::instances;
@@ -381,11 +381,38 @@ impl Scene {
         cells::cells(slf, accel, kind, threads)
     }
 
+    /// The scene as bytes, with the camera and the lights that a picture of it gets: for other
+    /// processes and machines. The same scene gives the same bytes.
+    fn to_bytes<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyBytes>> {
+        let plain = self.complete(py)?;
+        Ok(PyBytes::new(py, &py.detach(|| plain.to_bytes())))
+    }
+
+    /// The scene that `to_bytes` gave, from bytes or an array of uint8. A ValueError says what is
+    /// wrong with them.
+    #[staticmethod]
+    fn from_bytes(py: Python<'_>, data: &Bound<'_, PyAny>) -> PyResult<Self> {
+        let read = |bytes: &[u8]| py.detach(|| scene::Scene::from_bytes(bytes));
+        let scene = if let Ok(bytes) = data.cast::<PyBytes>() {
+            read(bytes.as_bytes())
+        } else {
+            let array: PyReadonlyArray1<'_, u8> = data.extract().map_err(|_| {
+                PyTypeError::new_err("expected bytes or a one-dimensional array of uint8")
+            })?;
+            read(array.as_slice()?)
+        };
+        Ok(Self::imported(scene.map_err(value_error)?, Vec::new()))
+    }
+
     /// Renders a picture: of light, or with `integrator="cost"` of what the same rays cost.
+    ///
+    /// `checkpoint` names a file that keeps what is finished if it takes longer than a second and a half, and is removed
+    /// at the end; with `resume` the rendering goes on with what is there. A ValueError says that the
+    /// file is of another scene or of other settings.
     #[pyo3(signature = (
         *, size = None, spp = 1, threads = None, accel = "auto", crop = None, view = None,
         max_depth = None, threshold = None, seed = 0, progress = None, preview = None,
-        on_interrupt = "raise", integrator = "whitted"
+        on_interrupt = "raise", integrator = "whitted", checkpoint = None, resume = false
     ))]
     #[expect(clippy::too_many_arguments, reason = "all by keyword")]
     fn render(
@@ -403,6 +430,8 @@ impl Scene {
         preview: Option<&Bound<'_, PyAny>>,
         on_interrupt: &str,
         integrator: &str,
+        checkpoint: Option<PathBuf>,
+        resume: bool,
     ) -> PyResult<Image> {
         let request = Request {
             size,
@@ -418,6 +447,8 @@ impl Scene {
             preview,
             on_interrupt,
             integrator,
+            checkpoint,
+            resume,
         };
         render::render(slf, &request)
     }
