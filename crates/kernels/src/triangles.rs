@@ -37,8 +37,10 @@ use crate::slab::{Scalar, Vector, round_up};
 
 /// Floats per triangle: x of the three corners, then y, then z.
 pub const FLOATS: usize = 9;
-/// Floats that must follow the last triangle of an array.
-pub const PADDING: usize = 8;
+/// Floats of a leaf and what follows it, whatever its size.
+pub const WINDOW: usize = 8 * FLOATS + 8;
+/// Floats that must follow the last triangle of an array, so that every leaf has a window.
+pub const PADDING: usize = WINDOW - FLOATS;
 
 const U: f32 = 1.0 / (1 << 24) as f32;
 
@@ -125,7 +127,8 @@ impl TriangleLine {
 
 /// Corners of the triangles of a leaf, from one lane on.
 struct Rows<'a, L: Lane> {
-    rows: &'a [f32],
+    rows: &'a [f32; WINDOW],
+    /// At most eight.
     count: usize,
     lane: usize,
     token: L::Token,
@@ -219,11 +222,11 @@ impl<L: Lane> Verdict<L> {
 /// Which of eight triangles a line crosses.
 pub trait TriangleTest: Copy {
     /// Tests the `count` triangles whose corners begin `rows`: `count` times x of corner 0, of
-    /// corner 1, of corner 2, then y and z. [`PADDING`] more floats must follow.
+    /// corner 1, of corner 2, then y and z. There are at most eight.
     fn test_triangles(
         self,
         line: &TriangleLine,
-        rows: &[f32],
+        rows: &[f32; WINDOW],
         count: usize,
         s_min: f32,
         s_max: f32,
@@ -236,14 +239,15 @@ impl TriangleTest for Scalar {
     fn test_triangles(
         self,
         line: &TriangleLine,
-        rows: &[f32],
+        rows: &[f32; WINDOW],
         count: usize,
         s_min: f32,
         s_max: f32,
         found: &mut Candidates,
     ) {
         (found.possible, found.certain) = (0, 0);
-        for lane in 0..count.min(8) {
+        let count = count.min(8);
+        for lane in 0..count {
             let one = Rows::<f32> {
                 rows,
                 count,
@@ -270,13 +274,14 @@ impl<S: Simd> TriangleTest for Vector<S> {
     fn test_triangles(
         self,
         line: &TriangleLine,
-        rows: &[f32],
+        rows: &[f32; WINDOW],
         count: usize,
         s_min: f32,
         s_max: f32,
         found: &mut Candidates,
     ) {
         let simd = self.0;
+        let count = count.min(8);
         let all = Rows::<f32x8<S>> {
             rows,
             count,

@@ -17,6 +17,8 @@ pub(super) struct Frame {
     center: DVec3,
     exponent: i32,
     scale: f64,
+    /// The largest coordinate of boxes.
+    extent: f64,
 }
 
 /// A box in the frame's coordinates, rounded outwards.
@@ -26,7 +28,7 @@ pub(super) struct LocalBox {
     pub(super) max: [f32; 3],
 }
 
-/// A line in the tree's coordinates, its origin at the closest approach to the centre.
+/// A line in the tree's coordinates, its origin at the closest approach to the centre or near it.
 #[derive(Clone, Copy, Debug)]
 pub struct LocalLine {
     pub(super) slab: SlabRay,
@@ -42,6 +44,8 @@ pub struct LocalLine {
 
 /// Farther than this from the centre no line meets the tree: boxes lie within 16.
 const REACH: f64 = 64.0;
+/// A line whose origin is as near as this is not moved.
+const NEAR: f64 = 2.0;
 
 impl Frame {
     pub(super) fn new(bounds: &Aabb) -> Self {
@@ -51,11 +55,16 @@ impl Frame {
         } else {
             0
         };
-        Self {
+        let mut frame = Self {
             center: bounds.center(),
             exponent,
             scale: libm::ldexp(1.0, exponent),
-        }
+            extent: 0.0,
+        };
+        let corners = [bounds.min, bounds.max].map(|p| frame.point(p).abs().max_element());
+        // More than boxes are rounded outwards by.
+        frame.extent = corners[0].max(corners[1]) * (1.0 + 1.0 / f64::from(1 << 20));
+        frame
     }
 
     pub(super) const fn center(&self) -> DVec3 {
@@ -87,11 +96,12 @@ impl Frame {
         let power = binary_exponent(longest);
         let direction = scaled(ray.direction, -power);
         let origin = self.point(ray.origin);
-        let slack = (origin.abs().max_element() + 16.0) * (1.0 / (1u64 << 41) as f64);
+        let distance = origin.abs().max_element();
+        let slack = (distance + 16.0) * (1.0 / (1u64 << 41) as f64);
         let rate = self.exponent + power;
         if !(slack < 16.0 && rate.abs() < 1000) {
             return Some(LocalLine {
-                slab: SlabRay::new([0.0; 3], [1.0; 3], (1u64 << 60) as f64),
+                slab: SlabRay::new([0.0; 3], [1.0; 3], self.extent, (1u64 << 60) as f64),
                 origin: DVec3::ZERO,
                 direction: DVec3::ONE,
                 slack,
@@ -100,13 +110,17 @@ impl Frame {
                 blind: true,
             });
         }
-        let shift = -origin.dot(direction) / direction.length_squared();
-        let nearest = origin + direction * shift;
-        if nearest.abs().max_element() > REACH {
-            return None;
+        let (mut shift, mut nearest) = (0.0, origin);
+        // Lines of a world begin there.
+        if distance > NEAR {
+            shift = -origin.dot(direction) / direction.length_squared();
+            nearest = origin + direction * shift;
+            if nearest.abs().max_element() > REACH {
+                return None;
+            }
         }
         Some(LocalLine {
-            slab: SlabRay::new(nearest.to_array(), direction.to_array(), slack),
+            slab: SlabRay::new(nearest.to_array(), direction.to_array(), self.extent, slack),
             origin: nearest,
             direction,
             slack,

@@ -8,6 +8,7 @@ mod nearest;
 mod occupied;
 mod packed;
 mod search;
+mod settle;
 mod volumes;
 mod wide;
 

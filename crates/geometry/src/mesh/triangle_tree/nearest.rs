@@ -11,6 +11,7 @@ use octray_math::{Interval, Ray};
 use octray_tree::{LeafVisitor, LocalLine};
 
 use super::divide::Triangles;
+use super::settle::Undecided;
 use super::wide::Leaves;
 use super::{TriangleRay, are_coplanar};
 
@@ -109,10 +110,21 @@ impl<'a> Nearest<'a> {
         self.leaves.tested
     }
 
-    /// The exact tests that are left.
-    #[inline]
-    pub(super) fn finish(mut self) -> Option<NearestTriangle> {
-        self.decide();
+    /// What is known, and which exact tests are left.
+    #[inline(always)]
+    pub(super) fn finish(
+        &self,
+        index: usize,
+        undecided: &mut Vec<Undecided>,
+    ) -> Option<NearestTriangle> {
+        for waiting in &self.waiting[..self.length] {
+            if waiting.nearest <= self.s_max {
+                undecided.push(Undecided {
+                    query: index as u32,
+                    triangle: waiting.triangle,
+                });
+            }
+        }
         self.best
     }
 

@@ -14,6 +14,7 @@ use super::divide::Triangles;
 use super::nearest::{Nearest, NearestTriangle, TriangleQuery};
 use super::packed::PackedTriangles;
 use super::search::{SearchCost, SearchMemory};
+use super::settle::Settlement;
 use super::{TriangleHit, TriangleRay};
 
 /// The tree with its packed triangles.
@@ -220,26 +221,33 @@ impl WideTriangles {
         let mut beams = memory.beams.take().unwrap_or_default();
         let mut first = 0;
         for part in queries.chunks(BEAM) {
-            if self.beam(part, Meeting::Start, &mut beams.beam) {
-                let BeamMemory {
-                    beam,
-                    stack,
-                    triangles,
-                    known,
-                } = &mut *beams;
-                let take = BeamNearest::new(exact, part, known);
+            let BeamMemory {
+                beam,
+                stack,
+                triangles,
+                known,
+                settlement,
+                costs,
+            } = &mut *beams;
+            settlement.clear(part.len());
+            let costs = &mut costs[..part.len()];
+            if self.beam(part, Meeting::Start, beam) {
+                let take = BeamNearest::new(exact, part, known, &mut settlement.best);
                 let mut visitor = self.beam_leaves(beam, triangles, take);
                 let cost = self.walk_beam(kernels, stack, &mut visitor);
-                for index in 0..part.len() {
-                    let found = visitor.take.finish(visitor.beam, index);
-                    answer(first + index, found, cost.share(index, part.len()));
+                known.finish(beam, part.len(), &mut settlement.undecided);
+                for (index, own) in costs.iter_mut().enumerate() {
+                    *own = cost.share(index, part.len());
                 }
             } else {
-                for (index, query) in part.iter().enumerate() {
-                    let mut cost = SearchCost::default();
-                    let found = self.nearest_one(kernels, exact, query, memory, &mut cost);
-                    answer(first + index, found, cost);
+                for (index, (query, cost)) in part.iter().zip(&mut *costs).enumerate() {
+                    *cost = SearchCost::default();
+                    self.nearest_one(kernels, exact, (index, query), memory, cost, settlement);
                 }
+            }
+            settlement.settle(kernels, exact, part);
+            for (index, (&found, &cost)) in settlement.best.iter().zip(&*costs).enumerate() {
+                answer(first + index, found, cost);
             }
             first += part.len();
         }
@@ -398,19 +406,23 @@ impl WideTriangles {
         flow.is_break()
     }
 
+    /// Walks alone; exact tests are left to the settlement.
     #[inline(always)]
     fn nearest_one(
         &self,
         kernels: impl Kernels,
         exact: Triangles<'_>,
-        query: &TriangleQuery,
+        (index, query): (usize, &TriangleQuery),
         memory: &mut SearchMemory,
         cost: &mut SearchCost,
-    ) -> Option<NearestTriangle> {
+        settlement: &mut Settlement,
+    ) {
         if query.span.is_empty() {
-            return None;
+            return;
         }
-        let local = self.tree.line(&query.ray)?;
+        let Some(local) = self.tree.line(&query.ray) else {
+            return;
+        };
         let reach = [local.lower(query.span.start), local.upper(query.span.end)];
         let leaves = Leaves::new(self, &local, reach[0]);
         let mut visitor = Nearest::new(leaves, exact, query, &local);
@@ -420,6 +432,6 @@ impl WideTriangles {
             .tree
             .walk(kernels, &local, reach, stack, walk, &mut visitor);
         walk.items += visitor.tested();
-        visitor.finish()
+        settlement.best[index % BEAM] = visitor.finish(index, &mut settlement.undecided);
     }
 }
