@@ -79,7 +79,7 @@ const STEEPEST: f64 = (1u128 << 100) as f64;
 
 /// The lowest `f32` that is not below `x`.
 #[must_use]
-#[inline]
+#[inline(always)]
 pub fn round_up(x: f64) -> f32 {
     let y = x as f32;
     if f64::from(y) < x { y.next_up() } else { y }
@@ -87,7 +87,7 @@ pub fn round_up(x: f64) -> f32 {
 
 /// The highest `f32` that is not above `x`.
 #[must_use]
-#[inline]
+#[inline(always)]
 pub fn round_down(x: f64) -> f32 {
     let y = x as f32;
     if f64::from(y) > x { y.next_down() } else { y }
@@ -100,7 +100,7 @@ impl SlabRay {
     /// `direction` has its largest component in `[1, 2)`; `origin` and `slack` are finite in
     /// `f32`, and `slack >= 2^-41`.
     #[must_use]
-    #[inline]
+    #[inline(always)]
     pub fn new(origin: [f64; 3], direction: [f64; 3], extent: f64, slack: f64) -> Self {
         let mut ray = Self {
             down: [false; 3],

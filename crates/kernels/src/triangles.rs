@@ -71,13 +71,23 @@ pub struct Candidates {
     pub farthest: [f32; 8],
 }
 
+impl Candidates {
+    /// No triangle.
+    pub const NONE: Self = Self {
+        possible: 0,
+        certain: 0,
+        nearest: [0.0; 8],
+        farthest: [0.0; 8],
+    };
+}
+
 impl TriangleLine {
     /// The line `origin + s * direction` near vertices within `[-16, 16]^3`.
     ///
     /// `direction` has its largest component in `[1, 2)`; `origin` is finite in `f32`. What the exact
     /// test rounds amounts to less than half of `slack`, and `slack >= 2^-41`.
     #[must_use]
-    #[inline]
+    #[inline(always)]
     pub fn new(origin: [f64; 3], direction: [f64; 3], slack: f64) -> Self {
         let size = direction.map(f64::abs);
         let z = if size[0] >= size[1] && size[0] >= size[2] {

@@ -84,7 +84,7 @@ impl TriangleRay {
     }
 
     /// Two axes across a direction, and the one along which it is longest.
-    #[inline]
+    #[inline(always)]
     pub(super) fn axes(direction: DVec3) -> [usize; 3] {
         let size = direction.abs();
         let z = if size.x >= size.y && size.x >= size.z {

@@ -75,6 +75,7 @@ impl Frame {
         self.scale
     }
 
+    #[inline(always)]
     pub(super) fn point(&self, p: DVec3) -> DVec3 {
         (p - self.center) * self.scale
     }
@@ -87,7 +88,7 @@ impl Frame {
     }
 
     /// `None` for a ray that cannot meet the tree, or is none (not finite, or without direction).
-    #[inline]
+    #[inline(always)]
     pub(super) fn ray(&self, ray: &Ray) -> Option<LocalLine> {
         let longest = ray.direction.abs().max_element();
         if !(ray.origin.is_finite() && ray.direction.is_finite() && longest > 0.0) {
@@ -131,13 +132,16 @@ impl Frame {
     }
 }
 
+/// The least number in `f32`, about.
+const TINY: f64 = 1.0 / (1u128 << 127) as f64 / (1u64 << 22) as f64;
+
 impl LocalLine {
     /// For tests of triangles whose corners are [`super::WideTree::local`] ones; `None` where numbers
     /// are so extreme that every triangle must be looked at.
     ///
     /// Covered is an exact test that rounds as little as [`super::WideTree`] asks of visitors.
     #[must_use]
-    #[inline]
+    #[inline(always)]
     pub fn triangle_line(&self) -> Option<TriangleLine> {
         let (origin, direction) = (self.origin.to_array(), self.direction.to_array());
         (!self.blind).then(|| TriangleLine::new(origin, direction, self.slack))
@@ -145,19 +149,19 @@ impl LocalLine {
 
     /// A local parameter not above the one at `t`.
     #[must_use]
-    #[inline]
+    #[inline(always)]
     pub fn lower(&self, t: f64) -> f32 {
         -self.rounded_up(-t, -self.shift, f32::INFINITY)
     }
 
     /// A local parameter not below the one at `t`.
     #[must_use]
-    #[inline]
+    #[inline(always)]
     pub fn upper(&self, t: f64) -> f32 {
         self.rounded_up(t, self.shift, f32::INFINITY)
     }
 
-    #[inline]
+    #[inline(always)]
     fn rounded_up(&self, t: f64, shift: f64, unknown: f32) -> f32 {
         if self.blind {
             return unknown;
@@ -167,12 +171,14 @@ impl LocalLine {
         }
         let s = t * self.rate;
         let error = (s.abs() + shift.abs()) * (1.0 / (1u64 << 50) as f64);
-        round_up((s - shift) + error)
+        let above = (s - shift) + error;
+        // Rounding to the nearest takes away less, and less than the last term of the smallest.
+        (above + (above.abs() * f64::from(f32::EPSILON) + TINY)) as f32
     }
 }
 
 /// `floor(log2 x)` for finite `x > 0`.
-#[inline]
+#[inline(always)]
 fn binary_exponent(x: f64) -> i32 {
     let field = (x.to_bits() >> 52) as i32;
     if field == 0 {
@@ -183,12 +189,12 @@ fn binary_exponent(x: f64) -> i32 {
 }
 
 /// `2^n` for `|n| <= 1022`.
-#[inline]
+#[inline(always)]
 fn power_of_two(n: i32) -> f64 {
     f64::from_bits(((n + 1023) as u64) << 52)
 }
 
-#[inline]
+#[inline(always)]
 fn scaled(v: DVec3, n: i32) -> DVec3 {
     if n.abs() <= 1022 {
         v * power_of_two(n)

@@ -169,7 +169,7 @@ impl WideTree {
 
     /// The line in the tree's coordinates; `None` for one that does not meet the tree.
     #[must_use]
-    #[inline]
+    #[inline(always)]
     pub fn line(&self, ray: &Ray) -> Option<LocalLine> {
         if self.nodes.is_empty() {
             return None;

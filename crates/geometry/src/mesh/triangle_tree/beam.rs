@@ -95,7 +95,7 @@ impl<T: Take> BeamLeaves<'_, T> {
     ) -> bool {
         let margin = 2.0 * self.beam.frame().error();
         let mut is_shorter = false;
-        let mut found = Candidates::default();
+        let mut found = Candidates::NONE;
         while lines != 0 {
             let place = lines.trailing_zeros() as usize & (GROUP - 1);
             lines &= lines - 1;

@@ -116,6 +116,15 @@ impl TriangleTree {
         self
     }
 
+    /// How kernels run.
+    #[must_use]
+    pub const fn lanes(&self) -> Lanes {
+        match &self.index {
+            Index::Wide(wide) => wide.tree.lanes(),
+            _ => Lanes::Scalar,
+        }
+    }
+
     /// How many triangles there are.
     #[must_use]
     pub fn len(&self) -> usize {

@@ -169,7 +169,7 @@ impl LeafVisitor for Nearest<'_> {
         s_max: f32,
     ) -> ControlFlow<(), f32> {
         self.s_max = s_max;
-        let mut found = Candidates::default();
+        let mut found = Candidates::NONE;
         let items = self.leaves.test(kernels, places, s_max, &mut found);
         while found.possible != 0 {
             let lane = found.possible.trailing_zeros() as usize & 7;

@@ -51,6 +51,7 @@ pub(super) struct Leaves<'a> {
 }
 
 impl<'a> Leaves<'a> {
+    #[inline(always)]
     fn new(wide: &'a WideTriangles, local: &LocalLine, s_min: f32) -> Self {
         Self {
             items: wide.tree.items(),
@@ -103,7 +104,7 @@ impl<F: FnMut(u32, &TriangleHit, f64) -> ControlFlow<(), f64>> LeafVisitor for C
         places: Range<usize>,
         mut s_max: f32,
     ) -> ControlFlow<(), f32> {
-        let mut found = Candidates::default();
+        let mut found = Candidates::NONE;
         let items = self.leaves.test(kernels, places, s_max, &mut found);
         while found.possible != 0 {
             let lane = found.possible.trailing_zeros() as usize;
