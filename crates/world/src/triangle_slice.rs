@@ -136,8 +136,8 @@ impl World {
             triangles.any_of(
                 queries,
                 &mut scratch.triangles,
-                |index, triangle, hit| {
-                    let found = Interface::of_sheet(&self.sheets.crossing(triangle, hit));
+                |index, found| {
+                    let found = Interface::of_sheet(&self.sheets.hit(found));
                     lines[index].as_ref().is_some_and(|line| {
                         found.s < line.end && counts(found.face) && !self.starts_on(line, &found)
                     })

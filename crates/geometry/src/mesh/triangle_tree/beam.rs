@@ -12,7 +12,7 @@ use super::nearest::{NearestTriangle, TriangleQuery};
 use super::packed::PackedTriangles;
 use super::search::SearchCost;
 use super::settle::{Settlement, Undecided};
-use super::{TriangleHit, TriangleRay};
+use super::TriangleRay;
 
 /// What is done with a line of a beam and a triangle that it may cross.
 pub(super) trait Take {
@@ -308,44 +308,12 @@ impl Take for BeamNearest<'_> {
         self.known.waiting[line][*length as usize & (WAITING - 1)] = candidate;
         *length += 1;
         if candidate.is_certain && candidate.nearest > beam.frame().error() {
-            if query.departed.is_none() {
-                end = end.min(candidate.farthest);
+            if query.leaves(candidate.triangle, &self.exact) {
+                *length -= 1;
             } else {
-                end = end.min(self.decide(beam, line));
+                end = end.min(candidate.farthest);
             }
         }
         end
-    }
-}
-
-/// Asks for each line whether any triangle counts.
-pub(super) struct BeamAny<'a, F> {
-    pub(super) exact: Triangles<'a>,
-    pub(super) queries: &'a [TriangleQuery],
-    pub(super) met: [bool; BEAM],
-    /// Of the line's index, the triangle and the crossing.
-    pub(super) counts: F,
-}
-
-impl<F: FnMut(usize, u32, &TriangleHit) -> bool> Take for BeamAny<'_, F> {
-    #[inline]
-    fn take(&mut self, _beam: &Beam, line: usize, candidate: Candidate) -> f32 {
-        let query = &self.queries[line];
-        let triangle = candidate.triangle;
-        if query.departed == Some(triangle) {
-            return f32::INFINITY;
-        }
-        let test = TriangleRay::new(&query.ray);
-        let Some(hit) = test.intersect(self.exact.corners(triangle)) else {
-            return f32::INFINITY;
-        };
-        let counts = query.counts(hit.t)
-            && !query.leaves(triangle, &self.exact)
-            && (self.counts)(line, triangle, &hit);
-        if counts {
-            self.met[line] = true;
-            return f32::NEG_INFINITY;
-        }
-        f32::INFINITY
     }
 }

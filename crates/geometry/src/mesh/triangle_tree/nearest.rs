@@ -184,10 +184,10 @@ impl LeafVisitor for Nearest<'_> {
             self.waiting[self.length & (WAITING - 1)] = Waiting { nearest, triangle };
             self.length += 1;
             if found.certain >> lane & 1 != 0 && nearest > self.s_after {
-                if self.query.departed.is_none() {
-                    self.s_max = self.s_max.min(found.farthest[lane]);
+                if self.query.leaves(triangle, &self.exact) {
+                    self.length -= 1;
                 } else {
-                    self.decide();
+                    self.s_max = self.s_max.min(found.farthest[lane]);
                 }
             }
         }

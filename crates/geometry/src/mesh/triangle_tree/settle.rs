@@ -23,6 +23,9 @@ pub(super) struct Undecided {
 pub(super) struct Settlement {
     pub(super) best: [Option<NearestTriangle>; BEAM],
     pub(super) undecided: Vec<Undecided>,
+    /// Whether a walk ended because of a triangle that is undecided.
+    pub(super) is_early: [bool; BEAM],
+    pub(super) met: [bool; BEAM],
     pairs: Pairs,
     found: Crossings,
 }
@@ -32,6 +35,8 @@ impl Default for Settlement {
         Self {
             best: [None; BEAM],
             undecided: Vec::new(),
+            is_early: [false; BEAM],
+            met: [false; BEAM],
             pairs: Pairs::default(),
             found: Crossings::default(),
         }
@@ -42,10 +47,12 @@ impl Settlement {
     /// Nothing is known about so many queries.
     pub(super) fn clear(&mut self, queries: usize) {
         self.best[..queries].fill(None);
+        self.is_early[..queries].fill(false);
+        self.met[..queries].fill(false);
         self.undecided.clear();
     }
 
-    /// Decides all that is undecided.
+    /// Decides which triangles are the nearest.
     #[inline(always)]
     pub(super) fn settle(
         &mut self,
@@ -53,11 +60,33 @@ impl Settlement {
         exact: Triangles<'_>,
         queries: &[TriangleQuery],
     ) {
+        let mut best = self.best;
+        self.each(kernels, exact, queries, |query, nearest| {
+            let known = &mut best[query % BEAM];
+            if nearest.is_before(known.as_ref())
+                && !queries[query].leaves(nearest.triangle, &exact)
+            {
+                *known = Some(nearest);
+            }
+        });
+        self.best = best;
+    }
+
+    /// Shows `visit` the crossings with undecided triangles that count by their parameter, with the
+    /// query's index. Nothing is undecided then.
+    #[inline(always)]
+    pub(super) fn each(
+        &mut self,
+        kernels: impl Kernels,
+        exact: Triangles<'_>,
+        queries: &[TriangleQuery],
+        mut visit: impl FnMut(usize, NearestTriangle),
+    ) {
         let Self {
-            best,
             undecided,
             pairs,
             found,
+            ..
         } = self;
         for some in undecided.chunks(PAIRS) {
             for (lane, one) in some.iter().enumerate() {
@@ -88,17 +117,13 @@ impl Settlement {
                     };
                     (hit.t, hit.entering)
                 };
-                let nearest = NearestTriangle {
-                    t,
-                    triangle: one.triangle,
-                    entering,
-                };
-                let known = &mut best[one.query as usize % BEAM];
-                if query.counts(t)
-                    && nearest.is_before(known.as_ref())
-                    && !query.leaves(one.triangle, &exact)
-                {
-                    *known = Some(nearest);
+                if query.counts(t) {
+                    let nearest = NearestTriangle {
+                        t,
+                        triangle: one.triangle,
+                        entering,
+                    };
+                    visit(one.query as usize, nearest);
                 }
             }
         }
