@@ -5,6 +5,7 @@
 
 use octray_geometry::FaceId;
 use octray_geometry::mesh::TriangleQuery;
+use octray_kernels::{Lanes, dispatch};
 use octray_math::Interval;
 
 use crate::line::Line;
@@ -14,7 +15,7 @@ use crate::solids::{Interface, Scratch};
 use crate::{Hit, RayQuery, World};
 
 /// Rays whose lines are in memory at a time.
-const PART: usize = 256;
+const PART: usize = 64;
 
 /// Working memory of slices that search triangles.
 #[derive(Debug, Default)]
@@ -27,8 +28,17 @@ pub(crate) struct TriangleSlice {
 }
 
 impl TriangleSlice {
-    /// The lines of some queries.
+    /// The lines of some queries, with the vector instructions of this machine: rounding to an integer is one
+    /// of them.
     fn fill(&mut self, world: &World, queries: &[RayQuery]) {
+        match world.sheets.triangles().lanes() {
+            Lanes::Scalar => self.fill_with(world, queries),
+            Lanes::Vector(level) => dispatch!(level, _simd => self.fill_with(world, queries)),
+        }
+    }
+
+    #[inline(always)]
+    fn fill_with(&mut self, world: &World, queries: &[RayQuery]) {
         self.lines.clear();
         self.queries.clear();
         for query in queries {
@@ -126,8 +136,8 @@ impl World {
             triangles.any_of(
                 queries,
                 &mut scratch.triangles,
-                |index, triangle, hit| {
-                    let found = Interface::of_sheet(&self.sheets.crossing(triangle, hit));
+                |index, found| {
+                    let found = Interface::of_sheet(&self.sheets.hit(found));
                     lines[index].as_ref().is_some_and(|line| {
                         found.s < line.end && counts(found.face) && !self.starts_on(line, &found)
                     })

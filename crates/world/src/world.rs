@@ -560,6 +560,7 @@ impl World {
 
     /// The query's line in the coordinates of the scene, `None` for a ray that meets nothing because
     /// it is none.
+    #[inline(always)]
     pub(crate) fn line(&self, query: &RayQuery, whole: bool) -> Option<Line> {
         let line = Line::new(query, &self.place)?;
         Some(if whole { line.whole() } else { line })
