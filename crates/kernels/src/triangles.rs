@@ -89,7 +89,7 @@ impl TriangleLine {
     #[must_use]
     #[inline(always)]
     pub fn new(origin: [f64; 3], direction: [f64; 3], slack: f64) -> Self {
-        let size = direction.map(f64::abs);
+        let size = [direction[0].abs(), direction[1].abs(), direction[2].abs()];
         let z = if size[0] >= size[1] && size[0] >= size[2] {
             0
         } else if size[1] >= size[2] {
@@ -106,7 +106,7 @@ impl TriangleLine {
         let error = slack + u * (6.0 * depth.abs() + 3.0 * across[0].abs().max(across[1].abs()));
         Self {
             axes: [x, y, z],
-            shear: shear.map(|s| s as f32),
+            shear: [shear[0] as f32, shear[1] as f32],
             origin: [across[0] as f32, across[1] as f32, depth as f32],
             s_per_depth: per_depth as f32,
             error: round_up(error),

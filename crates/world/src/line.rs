@@ -8,6 +8,7 @@ use crate::{Departure, RayQuery};
 
 /// The bits of a positive number that say its power of two.
 const EXPONENT_BITS: u64 = 0x7ff0_0000_0000_0000;
+const ONE_BITS: u64 = 1.0_f64.to_bits();
 
 /// More than a few roundings.
 const LIMIT_ROUNDING: f64 = 1.0 / (1u64 << 49) as f64;
@@ -94,8 +95,10 @@ pub(crate) struct Line {
 #[inline(always)]
 fn scaled(direction: DVec3, largest: f64) -> (DVec3, f64) {
     if (1e-300..1e300).contains(&largest) {
-        let power = f64::from_bits(largest.to_bits() & EXPONENT_BITS);
-        return (direction * power.recip(), power);
+        let power = largest.to_bits() & EXPONENT_BITS;
+        // The reciprocal of a power of two, without dividing.
+        let inverse = f64::from_bits(2 * ONE_BITS - power);
+        return (direction * inverse, f64::from_bits(power));
     }
     scaled_far(direction, largest)
 }

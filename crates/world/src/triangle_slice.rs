@@ -42,16 +42,21 @@ impl TriangleSlice {
         self.lines.clear();
         self.queries.clear();
         for query in queries {
-            let line = world.line(query, false);
-            self.queries.push(line.map_or(
-                TriangleQuery {
-                    ray: query.ray,
-                    span: Interval::EMPTY,
-                    departed: None,
-                },
-                |line| world.sheets.query(&line, f64::INFINITY),
-            ));
-            self.lines.push(line);
+            // Each by itself: what is merged first is copied once more.
+            match world.line(query, false) {
+                Some(line) => {
+                    self.queries.push(world.sheets.query(&line, f64::INFINITY));
+                    self.lines.push(Some(line));
+                }
+                None => {
+                    self.queries.push(TriangleQuery {
+                        ray: query.ray,
+                        span: Interval::EMPTY,
+                        departed: None,
+                    });
+                    self.lines.push(None);
+                }
+            }
         }
     }
 }
