@@ -10,7 +10,7 @@ import click
 
 from octray.cli.answers import JsonLines, Npz, Writer
 from octray.cli.exits import Exit, FailureError
-from octray.cli.messages import load
+from octray.cli.messages import load, preparing
 from octray.cli.options import (
     accel_option,
     progress_option,
@@ -157,21 +157,18 @@ class _Query:
 
     def run(self, scene: Scene) -> int:
         """Answer for all rays; say what happened."""
-        import octray
-
         start = time.perf_counter()
         style: Style = "none" if self.options["quiet"] else self.options["progress"]
         done = 0
         try:
-            scene.prepare(**self.method, **tree_values(self.options))
+            with preparing(self.path):
+                scene.prepare(**self.method, **tree_values(self.options))
             with self.writer as writer, Progress("query", style) as progress:
                 for columns, rows in self._answers(scene):
                     writer.add(columns)
                     done += rows
                     progress(done / max(len(self.rows), 1))
                 writer.finish(self._labels(scene))
-        except octray.SceneError as error:
-            raise FailureError(f"{self.path}: {error}", Exit.SCENE) from error
         except BrokenPipeError:
             raise
         except OSError as error:
