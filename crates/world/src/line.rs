@@ -132,7 +132,12 @@ impl Line {
             ray,
             origin: -shift,
             end: query.t_max * scale - shift,
-            departure: query.departure,
+            // Field by field: as a whole, with its padding, it is written and read in unequal parts.
+            departure: Departure {
+                face: query.departure.face,
+                instance: query.departure.instance,
+                outward: query.departure.outward,
+            },
             shift,
             scale,
         })

@@ -77,6 +77,7 @@ impl World {
     ) {
         let mut slice = std::mem::take(&mut scratch.triangle_slice);
         let triangles = self.sheets.triangles();
+        scratch.triangles.begin_slice();
         let mut first = 0;
         for part in queries.chunks(PART) {
             slice.fill(self, part);
@@ -127,6 +128,7 @@ impl World {
     ) {
         let mut slice = std::mem::take(&mut scratch.triangle_slice);
         let triangles = self.sheets.triangles();
+        scratch.triangles.begin_slice();
         let mut first = 0;
         for part in queries.chunks(PART) {
             slice.fill(self, part);

@@ -85,7 +85,8 @@ impl TriangleRay {
 
     /// Two axes across a direction, and the one along which it is longest.
     #[inline(always)]
-    pub(super) fn axes(direction: DVec3) -> [usize; 3] {
+    #[must_use]
+    pub fn axes(direction: DVec3) -> [usize; 3] {
         let size = direction.abs();
         let z = if size.x >= size.y && size.x >= size.z {
             0

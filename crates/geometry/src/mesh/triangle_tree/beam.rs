@@ -175,6 +175,40 @@ pub(super) struct Known {
     lengths: [u8; BEAM],
 }
 
+/// Whether beams have paid lately: where many triangles stand in the space of one, its lines are faster
+/// alone.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Coherence {
+    /// Runs of lines that are still to walk alone, and how many that was last time.
+    alone: u32,
+    last: u32,
+}
+
+/// What a line of a beam may cost, in nodes; four triangles cost about as much as two.
+const WORTH: u64 = 3;
+/// Runs that walk alone before a beam is tried again, at most.
+const LONGEST: u32 = 16;
+
+impl Coherence {
+    /// Whether to try a beam now.
+    pub(super) const fn allows(&mut self) -> bool {
+        let allows = self.alone == 0;
+        self.alone = self.alone.saturating_sub(1);
+        allows
+    }
+
+    /// What a beam of so many lines has cost.
+    pub(super) fn learn(&mut self, cost: &SearchCost, lines: usize) {
+        let is_worth = cost.walk.nodes + cost.walk.items / 2 <= WORTH * lines as u64;
+        self.last = if is_worth {
+            0
+        } else {
+            (2 * self.last).clamp(1, LONGEST)
+        };
+        self.alone = self.last;
+    }
+}
+
 /// Working memory of beams, kept from one to the next.
 #[derive(Clone, Debug)]
 pub(super) struct BeamMemory {

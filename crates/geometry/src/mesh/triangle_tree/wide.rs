@@ -233,10 +233,11 @@ impl WideTriangles {
             } = &mut *beams;
             settlement.clear(part.len());
             let costs = &mut costs[..part.len()];
-            if self.beam(part, Meeting::Start, beam) {
+            if memory.coherence.allows() && self.beam(part, Meeting::Start, beam) {
                 let take = BeamNearest::new(exact, part, known, &mut settlement.best);
                 let mut visitor = self.beam_leaves(beam, triangles, take);
                 let cost = self.walk_beam(kernels, stack, &mut visitor);
+                memory.coherence.learn(&cost, part.len());
                 known.finish(beam, part.len(), &mut settlement.undecided);
                 for (index, own) in costs.iter_mut().enumerate() {
                     *own = cost.share(index, part.len());
@@ -295,7 +296,9 @@ impl WideTriangles {
             } = &mut *beams;
             settlement.clear(part.len());
             let costs = &mut costs[..part.len()];
-            if self.beam(part, Meeting::End, beam) || self.beam(part, Meeting::Start, beam) {
+            if memory.coherence.allows()
+                && (self.beam(part, Meeting::End, beam) || self.beam(part, Meeting::Start, beam))
+            {
                 let take = BeamAny {
                     exact,
                     queries: part,
@@ -304,6 +307,7 @@ impl WideTriangles {
                 };
                 let mut visitor = self.beam_leaves(beam, triangles, take);
                 let cost = self.walk_beam(kernels, stack, &mut visitor);
+                memory.coherence.learn(&cost, part.len());
                 for (index, own) in costs.iter_mut().enumerate() {
                     *own = cost.share(index, part.len());
                 }
