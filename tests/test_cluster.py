@@ -185,7 +185,7 @@ def test_nodes_are_killed_and_added_and_the_picture_is_the_same(
 def test_the_command_renders_on_a_cluster_and_goes_on_after_it_was_killed(
     tmp_path: Path, octray_command: Octray, scene: octray.Scene
 ) -> None:
-    options = ["render", str(SCENE), "-o", "out.exr", "--size", "320x180", "--spp", "16"]
+    options = ["render", str(SCENE), "-o", "out.exr", "--size", "320x180", "--spp", "8"]
     kept = tmp_path / "out.exr.ckpt"
     with subprocess.Popen(
         [sys.executable, "-m", "octray", *options, "-q", "--cluster", "local:2"], cwd=tmp_path
@@ -198,6 +198,6 @@ def test_the_command_renders_on_a_cluster_and_goes_on_after_it_was_killed(
     # A local run goes on with what the cluster did.
     result = octray_command(*options, "--resume")
     assert result.returncode == 0, result.stderr
-    whole = scene.render(size=(320, 180), spp=16).to_bytes("exr")
+    whole = scene.render(size=(320, 180), spp=8).to_bytes("exr")
     assert (tmp_path / "out.exr").read_bytes() == whole
     assert not kept.exists()
