@@ -29,7 +29,7 @@ test-rust: toolchain
 test-python: .venv/tools
 	$(BIN)/pytest
 
-conformance: toolchain ## Compare every combination of methods with brute force on every scene (hours)
+conformance: toolchain ## Compare every combination of methods with brute force on every scene (an hour)
 	OCTRAY_CONFORMANCE=full cargo test --release -p octray --test conformance -- --nocapture
 
 lint: .venv/tools ## Check formatting, lints and types of both languages

@@ -13,6 +13,7 @@ use crate::convert::value_error;
 use crate::diagnostics::{Diagnostic, listed, scene_error};
 use crate::image::os_error;
 use crate::scene::Scene;
+use crate::system::available_memory;
 use crate::task;
 
 /// Reads any supported file; says what was wrong beside the scene, or instead of it.
@@ -23,10 +24,13 @@ pub(crate) fn read(
 ) -> PyResult<(scene::Scene, Vec<Diagnostic>)> {
     // What is not there or may not be read is an `OSError`, as everywhere in Python.
     std::fs::File::open(path).map_err(|error| os_error(path, &error))?;
-    let options = Options {
+    let mut options = Options {
         facets,
         ..Options::default()
     };
+    if let Some(bytes) = available_memory() {
+        options.memory_budget = options.memory_budget.min(bytes);
+    }
     let path = path.to_owned();
     let imported = task::run(py, move |_| octray::import::load(&path, &Disk, &options))?;
     match imported.scene {

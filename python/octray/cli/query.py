@@ -11,7 +11,7 @@ import click
 from octray.cli.answers import JsonLines, Npz, Writer
 from octray.cli.cluster_options import cluster_option, started
 from octray.cli.exits import Exit, FailureError
-from octray.cli.messages import load
+from octray.cli.messages import load, preparing
 from octray.cli.options import (
     accel_option,
     progress_option,
@@ -168,22 +168,19 @@ class _Query:
 
     def _run(self, scene: Scene) -> int:
         """Say what happened, too."""
-        import octray
-
         start = time.perf_counter()
         style: Style = "none" if self.options["quiet"] else self.options["progress"]
         done = 0
         try:
             if self.cluster is None:
-                scene.prepare(**self.method, **tree_values(self.options))
+                with preparing(self.path):
+                    scene.prepare(**self.method, **tree_values(self.options))
             with self.writer as writer, Progress("query", style) as progress:
                 for columns, rows in self._answers(scene):
                     writer.add(columns)
                     done += rows
                     progress(done / max(len(self.rows), 1))
                 writer.finish(self._labels(scene))
-        except octray.SceneError as error:
-            raise FailureError(f"{self.path}: {error}", Exit.SCENE) from error
         except BrokenPipeError:
             raise
         except OSError as error:

@@ -9,7 +9,7 @@ import click
 
 from octray.cli.cluster_options import cluster_option, started
 from octray.cli.exits import Exit, FailureError
-from octray.cli.messages import RejectedSceneError, load
+from octray.cli.messages import RejectedSceneError, load, preparing
 from octray.cli.options import (
     accel_option,
     picture_options,
@@ -239,7 +239,8 @@ class _Run:
         options = self.options
         how: dict[str, Any] = {"accel": options["accel"], "threads": options["threads"]}
         try:
-            scene.prepare(cells=options["load_cells"], **how, **tree_values(options))
+            with preparing(self.path):
+                scene.prepare(cells=options["load_cells"], **how, **tree_values(options))
             if options["dump_cells"]:
                 scene.dump_cells(options["dump_cells"], **how)
         except ValueError as error:
