@@ -84,11 +84,11 @@ DEVELOP := VIRTUAL_ENV='$(CURDIR)/.venv' $(BIN)/maturin develop --release
 .venv/installed: .venv/python pyproject.toml $(RUST_SOURCES)
 	@tools/check-toolchain --rust
 	@echo 'Building octray; the first time takes a few minutes.'
-	$(DEVELOP)
+	$(DEVELOP) --extras cluster,io
 	@touch $@
 
 .venv/tools: .venv/installed pyproject.toml
-	$(DEVELOP) --extras dev
+	$(DEVELOP) --extras cluster,io,dev
 	@touch $@
 
 .venv/lab: .venv/installed pyproject.toml

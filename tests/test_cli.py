@@ -316,8 +316,10 @@ def test_ctrl_c_saves_what_there_is(tmp_path: Path, preview: bool) -> None:
         out, err = run.communicate(timeout=60)
     assert run.returncode == 130
     assert "interrupted; slow.png has the" in err
+    assert "--resume goes on" in err
     assert (tmp_path / "slow.png").read_bytes().endswith(b"IEND\xaeB`\x82")
-    assert files(tmp_path) == ["slow.csg", "slow.png"]
+    # What was finished is kept, to go on with.
+    assert files(tmp_path) == ["slow.csg", "slow.png", "slow.png.ckpt"]
     report = json.loads(out)
     assert report["exit"] == 130
     assert report["complete"] is False

@@ -1,4 +1,4 @@
-"""Answers to rays and points as named columns: what ``octray query`` writes, wherever it is computed."""
+"""Answers to rays and points as named columns: what ``octray query`` writes."""
 
 from __future__ import annotations
 
@@ -14,7 +14,9 @@ if TYPE_CHECKING:
 Columns: TypeAlias = "tuple[npt.NDArray[np.int64] | None, dict[str, npt.NDArray[Any]]]"
 
 
-def columns(scene: Scene, mode: str, rows: npt.NDArray[np.float64], options: dict[str, Any]) -> Columns:
+def columns(
+    scene: Scene, mode: str, rows: npt.NDArray[np.float64], options: dict[str, Any]
+) -> Columns:
     """Answer by mode: ``first``, ``all``, ``count``, ``any`` or ``inside``.
 
     ``options`` are ``accel``, ``threads``, ``whole_line``, ``overlaps`` and ``normals``.

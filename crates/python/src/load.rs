@@ -2,10 +2,14 @@
 
 use std::path::{Path, PathBuf};
 
+use numpy::PyReadonlyArray1;
 use octray::import::{Disk, Options};
 use octray::scene;
+use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
+use pyo3::types::PyBytes;
 
+use crate::convert::value_error;
 use crate::diagnostics::{Diagnostic, listed, scene_error};
 use crate::image::os_error;
 use crate::scene::Scene;
@@ -33,6 +37,20 @@ pub(crate) fn read(
         Some(scene) => Ok((scene, listed(&imported.diagnostics))),
         None => Err(scene_error(py, &imported.diagnostics)),
     }
+}
+
+/// The scene in bytes or in an array of them.
+pub(crate) fn from_bytes(py: Python<'_>, data: &Bound<'_, PyAny>) -> PyResult<scene::Scene> {
+    let read = |bytes: &[u8]| py.detach(|| scene::Scene::from_bytes(bytes));
+    let scene = if let Ok(bytes) = data.cast::<PyBytes>() {
+        read(bytes.as_bytes())
+    } else {
+        let array: PyReadonlyArray1<'_, u8> = data.extract().map_err(|_| {
+            PyTypeError::new_err("expected bytes or a one-dimensional array of uint8")
+        })?;
+        read(array.as_slice()?)
+    };
+    scene.map_err(value_error)
 }
 
 /// Reads a scene or mesh file. What it does not support is listed in `Scene.diagnostics`; what

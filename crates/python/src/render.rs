@@ -331,7 +331,7 @@ pub(crate) fn render(scene: &Bound<'_, Scene>, request: &Request<'_, '_>) -> PyR
     let report = report::rendering(py, &rendering, &prepared, duration, threads, high)?;
     let about = PyDict::new(py);
     if let (Some(path), Some((error, exists))) = (&request.checkpoint, checkpoint) {
-        about.set_item("path", path)?;
+        about.set_item("path", path.display().to_string())?;
         about.set_item("exists", exists)?;
         about.set_item("error", error)?;
         about.set_item("resumed_pixels", resumed_pixels)?;

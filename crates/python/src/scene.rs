@@ -1,11 +1,12 @@
 //! The scene: a builder that Python code adds to.
 
+mod state;
+
 use std::path::PathBuf;
 
-use numpy::{PyArrayDyn, PyReadonlyArray1};
+use numpy::PyArrayDyn;
 use octray::geometry::Sheet;
-use octray::scene::{self, SceneBuilder, SceneError, Settings, Shape};
-use octray::world::Method;
+use octray::scene::{SceneBuilder, Shape};
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict, PyList};
@@ -14,8 +15,8 @@ use crate::background;
 use crate::building::Building;
 use crate::camera::Camera;
 use crate::cells::{self, Cells};
-use crate::convert::{Triple, value_error, vector};
-use crate::diagnostics::{Diagnostic, invalid_scene};
+use crate::convert::{Triple, vector};
+use crate::diagnostics::Diagnostic;
 use crate::image::Image;
 use crate::instances;
 use crate::light::Light;
@@ -25,7 +26,7 @@ use crate::queries::{self, Crossings, Hits, Intersections};
 use crate::render::{self, Request};
 use crate::solid::Solid;
 use crate::structures;
-use crate::world::{Prepared, completed, prepare, prepared, read_cells, write_cells};
+use crate::world::{Prepared, prepare, prepared, read_cells, write_cells};
 
 /// Objects, lights, a camera and a background.
 #[pyclass(module = "octray")]
@@ -38,61 +39,6 @@ pub(crate) struct Scene {
     /// Counts the changes, so that a world made meanwhile is known to be stale.
     revision: u64,
     prepared: Option<Prepared>,
-}
-
-impl Scene {
-    pub(crate) fn imported(scene: scene::Scene, diagnostics: Vec<Diagnostic>) -> Self {
-        Self {
-            builder: scene.into_builder(),
-            diagnostics,
-            imported: true,
-            ..Self::default()
-        }
-    }
-
-    /// The scene as it stands, validated, with what a picture needs and it lacks.
-    pub(crate) fn complete(&self, py: Python<'_>) -> PyResult<scene::Scene> {
-        let built = self.builder.clone().build();
-        let plain = built.map_err(|errors: Vec<SceneError>| invalid_scene(py, &errors))?;
-        Ok(completed(plain, !self.imported))
-    }
-
-    /// The scene as it stands, not validated.
-    pub(crate) const fn so_far(&self) -> &scene::Scene {
-        self.builder.so_far()
-    }
-
-    pub(crate) fn settings(&self) -> &Settings {
-        self.builder.so_far().settings()
-    }
-
-    pub(crate) fn own_camera(&self) -> Option<scene::Camera> {
-        self.builder.so_far().camera().copied()
-    }
-
-    /// Keeps what an importer said.
-    pub(crate) fn said(&mut self, diagnostics: Vec<Diagnostic>) {
-        self.diagnostics.extend(diagnostics);
-    }
-
-    pub(crate) const fn revision(&self) -> u64 {
-        self.revision
-    }
-
-    pub(crate) fn prepared(&self, method: Method) -> Option<&Prepared> {
-        self.prepared.as_ref().filter(|p| p.method == method)
-    }
-
-    pub(crate) fn keep(&mut self, prepared: Prepared) {
-        self.prepared = Some(prepared);
-    }
-
-    /// The builder, for a change that a world made before does not know of.
-    pub(crate) fn changed(&mut self) -> &mut SceneBuilder {
-        self.revision += 1;
-        self.prepared = None;
-        &mut self.builder
-    }
 }
 
 #[pymethods]
@@ -392,23 +338,16 @@ impl Scene {
     /// wrong with them.
     #[staticmethod]
     fn from_bytes(py: Python<'_>, data: &Bound<'_, PyAny>) -> PyResult<Self> {
-        let read = |bytes: &[u8]| py.detach(|| scene::Scene::from_bytes(bytes));
-        let scene = if let Ok(bytes) = data.cast::<PyBytes>() {
-            read(bytes.as_bytes())
-        } else {
-            let array: PyReadonlyArray1<'_, u8> = data.extract().map_err(|_| {
-                PyTypeError::new_err("expected bytes or a one-dimensional array of uint8")
-            })?;
-            read(array.as_slice()?)
-        };
-        Ok(Self::imported(scene.map_err(value_error)?, Vec::new()))
+        Ok(Self::imported(
+            crate::load::from_bytes(py, data)?,
+            Vec::new(),
+        ))
     }
 
     /// Renders a picture: of light, or with `integrator="cost"` of what the same rays cost.
     ///
-    /// `checkpoint` names a file that keeps what is finished if it takes longer than a second and a half, and is removed
-    /// at the end; with `resume` the rendering goes on with what is there. A ValueError says that the
-    /// file is of another scene or of other settings.
+    /// `checkpoint` names a file that keeps what is finished while it takes long, and is removed at
+    /// the end; with `resume` the rendering goes on with it. A ValueError says that it is of another.
     #[pyo3(signature = (
         *, size = None, spp = 1, threads = None, accel = "auto", crop = None, view = None,
         max_depth = None, threshold = None, seed = 0, progress = None, preview = None,

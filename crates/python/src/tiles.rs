@@ -326,6 +326,7 @@ impl TileRenderer {
 
     /// Renders the tiles of these numbers; gives their records and what they cost: `render_s`, and
     /// `rays` and `hits` by kind.
+    #[expect(clippy::needless_pass_by_value, reason = "how PyO3 takes lists")]
     fn render<'py>(
         &self,
         py: Python<'py>,

@@ -35,7 +35,7 @@ class WorkerAccount:
     restarts: int = 0
 
     def greeted(self, hello: dict[str, Any]) -> None:
-        """A process has come."""
+        """Take note that a process has come."""
         self.host, self.threads = hello["host"], hello["threads"]
         if hello["pid"] not in self.pids:
             self.restarts += bool(self.pids)
@@ -99,18 +99,20 @@ class Accounts:
     def table(self) -> str:
         """Give a line for each worker and one for all."""
         mebi = 1 << 20
-        lines = [
+        heading = (
             "worker                 memory MiB  load s  trace s  other s  idle s"
             "      Mrays  calls  MiB in  MiB out  lost  restarts"
-        ]
+        )
+        lines = [heading]
         total = self.as_dict()["total"] | {"name": "all", "host": ""}
         for row in [*(dataclasses.asdict(worker) for worker in self.workers), total]:
             name = f"{row['name']} {row['host']}".strip()
             lines.append(
                 f"{name:<22} {row['memory_bytes'] / mebi:10.0f} {row['load_s']:7.2f}"
                 f" {row['trace_s']:8.2f} {row['other_s']:8.2f} {row['idle_s']:7.2f}"
-                f" {row['rays'] / 1e6:10.3f} {row['messages'] // 2:6d} {row['bytes_in'] / mebi:7.1f}"
-                f" {row['bytes_out'] / mebi:8.1f} {row['lost']:5d} {row['restarts']:9d}"
+                f" {row['rays'] / 1e6:10.3f} {row['messages'] // 2:6d}"
+                f" {row['bytes_in'] / mebi:7.1f} {row['bytes_out'] / mebi:8.1f}"
+                f" {row['lost']:5d} {row['restarts']:9d}"
             )
         lines.append(
             f"driver: {self.start_s:.2f} s to start, {self.work_s:.2f} s of work, of which"

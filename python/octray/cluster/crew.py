@@ -182,7 +182,9 @@ class Crew:
         who = f"the worker on {hello['host']}"
         for what in ("version", "python", "binary"):
             if hello[what] != own[what]:
-                kind = {"version": "octray", "python": "Python", "binary": "the compiled core"}[what]
+                kind = {"version": "octray", "python": "Python", "binary": "the compiled core"}[
+                    what
+                ]
                 return (
                     f"{who} is refused: it has {kind} {hello[what]}, this machine {own[what]};"
                     " the same bits need the same program"

@@ -1,9 +1,9 @@
 """Ray: started, joined and left; the only module that imports it.
 
 What is set, and why: no usage statistics; token authentication; everything bound to loopback unless
-another machine takes part; a node that does not answer for two seconds is dead; the object store has
-a size that we know; no dashboard. A local cluster is always a new one: one that runs already is never
-joined unless its address is given, and one that we did not start is never stopped.
+another machine takes part; a node that does not answer for two seconds is dead; the object store
+has a size that we know; no dashboard. A local cluster is always a new one: one that runs already is
+never joined unless its address is given, and one that we did not start is never stopped.
 """
 
 from __future__ import annotations
@@ -41,8 +41,6 @@ def environment(token: str | None = None) -> dict[str, str]:
     variables = {
         "RAY_USAGE_STATS_ENABLED": "0",
         "RAY_AUTH_MODE": "token",
-        # The engine may be told to leave a busy machine's processes alone; answers are ours to wait for.
-        "RAY_DEDUP_LOGS": "0",
         "RAY_ACCEL_ENV_VAR_OVERRIDE_ON_ZERO": "0",
     }
     if token is not None:
@@ -54,11 +52,15 @@ def load(token: str | None = None) -> Any:
     """Import Ray with the environment that it is to have."""
     os.environ.update(environment(token))
     try:
-        return importlib.import_module("ray")
+        ray = importlib.import_module("ray")
+        # It reads the token when it is imported, which may have been before.
+        core: Any = importlib.import_module("ray._raylet")
+        core.AuthenticationTokenLoader.instance().reset_cache()
     except ImportError as error:
         raise MissingExtraError(
             "clusters need Ray: pip install 'octray[cluster]' (in octray's own source: make setup)"
         ) from error
+    return ray
 
 
 def stay_on_loopback() -> None:
@@ -66,7 +68,7 @@ def stay_on_loopback() -> None:
 
     Ray replaces 127.0.0.1 by an address that others can reach; this answers its question instead.
     """
-    services = importlib.import_module("ray._private.services")
+    services: Any = importlib.import_module("ray._private.services")
     services.get_node_ip_address = lambda *_args, **_options: "127.0.0.1"
 
 
@@ -104,7 +106,7 @@ class Engine:
     @staticmethod
     def _silence() -> None:
         """Say about dead workers what we say, not what the engine prints."""
-        worker = importlib.import_module("ray._private.worker")
+        worker: Any = importlib.import_module("ray._private.worker")
         worker.print_to_stdstream = lambda *_args, **_options: None
 
     @property

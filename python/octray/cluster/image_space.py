@@ -7,6 +7,7 @@ import time
 from typing import TYPE_CHECKING, Any
 
 from octray.cluster.ledger import Ledger
+from octray.cluster.shipment import Holders, Shipment
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -29,16 +30,6 @@ _FIRST = 2
 
 
 @dataclasses.dataclass
-class Shipment:
-    """A scene on its way to workers."""
-
-    key: str
-    data: Any
-    accel: str
-    trees: dict[str, Any]
-
-
-@dataclasses.dataclass
 class Watch:
     """Who wants to know: how far it is, with figures; and where finished tiles are kept."""
 
@@ -55,6 +46,7 @@ class ImageSpace:
         accounts: Accounts,
         shipment: Shipment,
         picture: TiledPicture,
+        *,
         settings: dict[str, Any],
         watch: Watch,
     ) -> None:
@@ -66,7 +58,7 @@ class ImageSpace:
         self._settings = settings
         self._watch = watch
         self._ledger: Ledger[int] = Ledger(picture.missing())
-        self._loaded: dict[Member, int] = {}
+        self._holders = Holders(crew, shipment)
         #: By call, how many tiles.
         self._under_way: dict[Member, dict[int, int]] = {}
         self._rays = 0
@@ -76,8 +68,6 @@ class ImageSpace:
         """Render until nothing is missing. On Ctrl-C what is finished is in the checkpoint."""
         crew = self._crew
         try:
-            for member in crew.ready:
-                self._load(member)
             while self._ledger.missing:
                 waiting = time.monotonic()
                 for event in crew.events():
@@ -103,41 +93,19 @@ class ImageSpace:
         if ledger.missing:
             self._keep(at_once=True)
 
-    def _load(self, member: Member) -> None:
-        shipment = self._shipment
-        self._loaded.pop(member, None)
-        self._crew.call(
-            member,
-            "load",
-            shipment.key,
-            shipment.data,
-            shipment.accel,
-            shipment.trees,
-            tag=("load", 0),
-        )
-
     def _take(self, event: Event) -> None:
-        member = event.member
-        if event.kind == "ready":
-            self._load(member)
+        if self._holders.takes(event):
             return
-        kind, call = event.tag
+        member, (_, call) = event.member, event.tag
         if event.kind == "lost":
-            self._loaded.pop(member, None)
-            if kind == "render":
-                self._under_way.get(member, {}).pop(call, None)
-                self._ledger.lost(call)
-            return
-        if kind == "load":
-            member.account.add(event.answer)
-            self._loaded[member] = event.answer["pid"]
+            self._under_way[member].pop(call, None)
+            self._ledger.lost(call)
             return
         tiles = self._under_way[member].pop(call)
         if event.answer is None:
             # The process is new and has no scene yet.
             self._ledger.lost(call)
-            if member in self._loaded:
-                self._load(member)
+            self._holders.not_there(member)
             return
         records, figures = event.answer
         member.account.add(figures)
@@ -154,9 +122,7 @@ class ImageSpace:
 
     def _hand_out(self) -> None:
         """Give every worker that has room something to do."""
-        for member in list(self._loaded):
-            if member.hello is None:
-                continue
+        for member in self._holders.members:
             own = self._under_way.setdefault(member, {})
             while len(own) < OUTSTANDING:
                 given = self._ledger.give(self._count(member))
@@ -183,7 +149,7 @@ class ImageSpace:
             count = _FIRST * member.threads
         else:
             count = round(PIECE_SECONDS / max(member.pace, 1e-6))
-        workers = max(len(self._loaded), 1)
+        workers = max(len(self._holders.members), 1)
         fair = -(-self._ledger.waiting // (_SHARE * workers))
         return max(min(count, fair), 1)
 
@@ -191,7 +157,7 @@ class ImageSpace:
         """Give what people want to see while they wait."""
         seconds = max(time.monotonic() - self._start, 1e-9)
         lost = sum(member.account.lost for member in self._crew.members)
-        text = f"{len(self._loaded)} workers, {self._rays / seconds / 1e6:.2f} Mrays/s"
+        text = f"{len(self._holders.members)} workers, {self._rays / seconds / 1e6:.2f} Mrays/s"
         if lost or self._ledger.retried:
             text += f", {lost} calls lost, {self._ledger.retried} tiles retried"
         return text

@@ -51,11 +51,9 @@ class Ledger(Generic[Key]):
     def double(self, exclude: Iterable[int], count: int) -> tuple[int, tuple[Key, ...]] | None:
         """Give out pieces again that are under way only once, and not in the calls ``exclude``."""
         avoid = set(exclude)
-        keys = [
-            key
-            for key, calls in self._open.items()
-            if len(calls) == 1 and not calls & avoid
-        ][:count]
+        keys = [key for key, calls in self._open.items() if len(calls) == 1 and not calls & avoid][
+            :count
+        ]
         if not keys:
             return None
         self.doubled += len(keys)

@@ -11,15 +11,20 @@ from octray.cluster.address import Address
 from octray.cluster.crew import Crew
 from octray.cluster.engine import Engine
 from octray.cluster.errors import ClusterError
-from octray.cluster.image_space import ImageSpace, Shipment, Watch
+from octray.cluster.image_space import ImageSpace, Watch
+from octray.cluster.queries import Queries
+from octray.cluster.shipment import Shipment
 
 if TYPE_CHECKING:
     import os
-    from collections.abc import Callable
+    from collections.abc import Callable, Iterator
 
+    import numpy as np
+    import numpy.typing as npt
     from typing_extensions import Self
 
     from octray import Image, Scene
+    from octray._answers import Columns
 
 Distribution = Literal["image", "object"]
 
@@ -30,9 +35,9 @@ _SETTINGS = ("size", "spp", "crop", "view", "max_depth", "threshold", "seed", "i
 class Cluster:
     """Workers on this machine or on others.
 
-    ``address`` is ``"local"`` (a worker for each processor), ``"local:4"``, ``"HOST:PORT"`` or ``"auto"``
-    (the cluster that runs on this machine). Starting takes a few seconds, so keep it for several
-    pictures. A cluster that was joined is left running.
+    ``address`` is ``"local"`` (a worker for each processor), ``"local:4"``, ``"HOST:PORT"`` or
+    ``"auto"`` (the cluster that runs on this machine). Starting takes a few seconds, so keep it for
+    several pictures. A cluster that was joined is left running.
     """
 
     def __init__(
@@ -113,9 +118,10 @@ class Cluster:
     ) -> Image:
         """Render a picture; its bytes are those of ``scene.render`` with the same settings.
 
-        ``settings`` are those of ``Scene.render``: size, spp, crop, view, max_depth, threshold, seed,
-        integrator. ``trees`` are keywords of ``Scene.prepare``. ``progress`` is called with the share that
-        is done and a line of figures. ``checkpoint`` keeps what is finished, ``resume`` goes on with it.
+        ``settings`` are those of ``Scene.render``: size, spp, crop, view, max_depth, threshold,
+        seed, integrator. ``trees`` are keywords of ``Scene.prepare``. ``progress`` is called with
+        the share that is done and a line of figures. ``checkpoint`` keeps what is finished,
+        ``resume`` goes on with it.
         """
         from octray._core import TiledPicture  # noqa: PLC0415 - heavy
 
@@ -136,7 +142,12 @@ class Cluster:
         start = time.monotonic()
         try:
             ImageSpace(
-                self._crew, self.accounts, shipment, picture, {**asked, "accel": accel}, watch
+                self._crew,
+                self.accounts,
+                shipment,
+                picture,
+                settings={**asked, "accel": accel},
+                watch=watch,
             ).run()
         except KeyboardInterrupt:
             if on_interrupt == "raise":
@@ -155,3 +166,36 @@ class Cluster:
                 "cluster": self.accounts.as_dict(),
             }
         )
+
+    def query(
+        self,
+        scene: Scene,
+        mode: str,
+        rows: npt.NDArray[np.float64],
+        *,
+        chunk: int = 65536,
+        accel: str = "auto",
+        trees: dict[str, Any] | None = None,
+        **options: Any,
+    ) -> Iterator[tuple[Columns, int]]:
+        """Answer rays (N, 6) or points (N, 3): named columns and how many rows, in order.
+
+        ``mode`` is ``first``, ``all``, ``count``, ``any`` or ``inside``; ``whole_line``,
+        ``overlaps`` and ``normals`` are those of ``octray query``. The bits are those of the
+        methods of ``Scene``.
+        """
+        import numpy as np  # noqa: PLC0415 - heavy
+
+        usual = {"whole_line": False, "overlaps": None, "normals": False}
+        unknown = set(options) - set(usual)
+        if unknown:
+            raise TypeError(f"a cluster's query has no {', '.join(sorted(unknown))}")
+        shipment = self._shipment(scene, accel, trees or {})
+        queries = Queries(
+            self._crew, self.accounts, shipment, mode, {**usual, **options, "accel": accel}
+        )
+
+        def part(index: int) -> npt.NDArray[np.float64]:
+            return np.array(rows[index * chunk : (index + 1) * chunk], dtype=np.float64)
+
+        return queries.run(-(-len(rows) // chunk), part)

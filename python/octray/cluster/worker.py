@@ -67,7 +67,10 @@ class Worker:
         from octray import Scene  # noqa: PLC0415
 
         start = self._begin()
+        if key == self._key:
+            return self._account(start, {})
         self._renderers.clear()
+        self._key = None
         self._scene = Scene.from_bytes(data)
         self._scene.prepare(accel=accel, threads=self._threads, **trees)
         self._key = key
