@@ -61,11 +61,7 @@ impl CrossingTest for Scalar {
 
 /// An edge function and the sum of its products' sizes.
 #[inline(always)]
-fn edge<S: Simd>(
-    simd: S,
-    a: [f64x8<S>; 2],
-    b: [f64x8<S>; 2],
-) -> (f64x8<S>, f64x8<S>) {
+fn edge<S: Simd>(simd: S, a: [f64x8<S>; 2], b: [f64x8<S>; 2]) -> (f64x8<S>, f64x8<S>) {
     let (plus, minus) = (a[0] * b[1], a[1] * b[0]);
     (plus - minus, simd.abs_f64x8(plus) + simd.abs_f64x8(minus))
 }
@@ -76,7 +72,10 @@ impl<S: Simd> CrossingTest for Vector<S> {
         let simd = self.0;
         // Written out: closures are not always inlined, and vectors must not go through calls.
         let d = &pairs.directions;
-        let (dx, dy) = (f64x8::from_slice(simd, &d[0]), f64x8::from_slice(simd, &d[1]));
+        let (dx, dy) = (
+            f64x8::from_slice(simd, &d[0]),
+            f64x8::from_slice(simd, &d[1]),
+        );
         let dz = f64x8::from_slice(simd, &d[2]);
         let (shear_x, shear_y) = (dx / dz, dy / dz);
         let mut across = [[dz; 2]; 3];

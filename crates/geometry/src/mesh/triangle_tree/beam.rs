@@ -7,12 +7,12 @@ use octray_kernels::triangles::WINDOW;
 use octray_kernels::{BeamTriangles, Candidates, Kernels, RayCandidates};
 use octray_tree::wide_tree::{BEAM, Beam, BeamVisitor, GROUPS, PendingBeam};
 
+use super::TriangleRay;
 use super::divide::Triangles;
 use super::nearest::{NearestTriangle, TriangleQuery};
 use super::packed::PackedTriangles;
 use super::search::SearchCost;
 use super::settle::{Settlement, Undecided};
-use super::TriangleRay;
 
 /// What is done with a line of a beam and a triangle that it may cross.
 pub(super) trait Take {

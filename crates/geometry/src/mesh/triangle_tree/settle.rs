@@ -63,8 +63,7 @@ impl Settlement {
         let mut best = self.best;
         self.each(kernels, exact, queries, |query, nearest| {
             let known = &mut best[query % BEAM];
-            if nearest.is_before(known.as_ref())
-                && !queries[query].leaves(nearest.triangle, &exact)
+            if nearest.is_before(known.as_ref()) && !queries[query].leaves(nearest.triangle, &exact)
             {
                 *known = Some(nearest);
             }
