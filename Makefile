@@ -29,7 +29,7 @@ test-rust: toolchain
 test-python: .venv/tools
 	$(BIN)/pytest
 
-conformance: toolchain ## Compare every combination of methods with brute force on every scene (hours)
+conformance: toolchain ## Compare every combination of methods with brute force on every scene (an hour)
 	OCTRAY_CONFORMANCE=full cargo test --release -p octray --test conformance -- --nocapture
 
 lint: .venv/tools ## Check formatting, lints and types of both languages
@@ -84,11 +84,11 @@ DEVELOP := VIRTUAL_ENV='$(CURDIR)/.venv' $(BIN)/maturin develop --release
 .venv/installed: .venv/python pyproject.toml $(RUST_SOURCES)
 	@tools/check-toolchain --rust
 	@echo 'Building octray; the first time takes a few minutes.'
-	$(DEVELOP)
+	$(DEVELOP) --extras cluster,io
 	@touch $@
 
 .venv/tools: .venv/installed pyproject.toml
-	$(DEVELOP) --extras dev
+	$(DEVELOP) --extras cluster,io,dev
 	@touch $@
 
 .venv/lab: .venv/installed pyproject.toml

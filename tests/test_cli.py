@@ -10,6 +10,7 @@ import sys
 import time
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
 import pytest
 
 import octray
@@ -17,8 +18,11 @@ from conftest import COMMAND
 
 if TYPE_CHECKING:
     from pathlib import Path
+    from typing import Literal
 
     from conftest import Octray
+
+    Side = Literal["front", "right", "top", "bottom"]
 
 SIZE = ("--size", "40x30")
 
@@ -312,8 +316,10 @@ def test_ctrl_c_saves_what_there_is(tmp_path: Path, preview: bool) -> None:
         out, err = run.communicate(timeout=60)
     assert run.returncode == 130
     assert "interrupted; slow.png has the" in err
+    assert "--resume goes on" in err
     assert (tmp_path / "slow.png").read_bytes().endswith(b"IEND\xaeB`\x82")
-    assert files(tmp_path) == ["slow.csg", "slow.png"]
+    # What was finished is kept, to go on with.
+    assert files(tmp_path) == ["slow.csg", "slow.png", "slow.png.ckpt"]
     report = json.loads(out)
     assert report["exit"] == 130
     assert report["complete"] is False
@@ -385,6 +391,33 @@ def test_the_doctor_finds_this_installation_sound(octray_command: Octray) -> Non
     report = json.loads(octray_command("doctor", "--json").stdout)
     assert report["good"] is True
     assert {check["name"] for check in report["checks"]} >= {"versions", "rendering", "directory"}
+
+
+@pytest.mark.parametrize(
+    ("side", "shares"),
+    [("front", (2, 4)), ("right", (3, 4)), ("top", (2, 3)), ("bottom", (2, 3))],
+)
+def test_view_from_shows_a_part_as_drawings_do(
+    octray_command: Octray, tmp_path: Path, side: Side, shares: tuple[int, int]
+) -> None:
+    """A box of 2 x 3 x 4 shows the rectangle of that side."""
+    (tmp_path / "part.csg").write_text(
+        "multmatrix([[1,0,0,50],[0,1,0,9],[0,0,1,-7],[0,0,0,1]])"
+        "{ cube(size = [2, 3, 4], center = true); }"
+    )
+    arguments = ("part.csg", "--size", "200x200", "--view-from", side, "-o", "part.exr")
+    done = octray_command("render", *arguments)
+    assert done.returncode == 0, done.stderr
+    scene = octray.load(tmp_path / "part.csg")
+    scene.view_from(side)
+    rendered = scene.render(size=(200, 200))
+    assert (tmp_path / "part.exr").read_bytes() == rendered.to_bytes("exr")
+    image = rendered.to_numpy()
+    # Parallel rays see the same of the background everywhere.
+    rows, columns = np.nonzero((image != image[0, 0]).any(axis=-1))
+    width, height = np.ptp(columns) + 1, np.ptp(rows) + 1
+    assert max(width, height) == pytest.approx(184, abs=2)
+    assert width / height == pytest.approx(shares[0] / shares[1], abs=0.02)
 
 
 def test_viewall_moves_the_camera(octray_command: Octray, cube: Path) -> None:

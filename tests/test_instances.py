@@ -114,7 +114,7 @@ def test_no_copies_and_wrong_things() -> None:
 def test_more_copies_than_the_memory_limit_allows_are_refused() -> None:
     scene = octray.Scene()
     scene.add_instances(octray.sphere(1), moves(*[(float(i), 0, 0) for i in range(2000)]))
-    with pytest.raises(ValueError, match="instances: a tree over 2000 items"):
+    with pytest.raises(MemoryError, match="instances: a tree over 2000 items"):
         scene.prepare(tree_memory=50_000)
 
 

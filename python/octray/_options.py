@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Literal, TypedDict
 
 if TYPE_CHECKING:
+    import os
     from collections.abc import Callable
 
     from octray._core import Image
@@ -40,3 +41,5 @@ class RenderOptions(TypedDict, total=False):
     preview: Callable[[Image], object] | None
     on_interrupt: Literal["raise", "return"]
     integrator: Integrator
+    checkpoint: str | os.PathLike[str] | None
+    resume: bool

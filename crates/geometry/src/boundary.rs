@@ -11,7 +11,10 @@ use crate::profile::{Piece, Turning};
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Boundary {
     /// Of a polyhedron.
-    Triangles(Arc<[[DVec3; 3]]>),
+    Triangles {
+        triangles: Arc<[[DVec3; 3]]>,
+        source: Arc<Faces>,
+    },
     /// Of a region between two heights; `scale[i]` times as large at height `z[i]`.
     Prism {
         /// Closed outlines, one after the other: inside is what an odd number of them goes round.
@@ -27,10 +30,18 @@ pub(crate) enum Boundary {
     },
 }
 
+/// What a polyhedron is made from.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Faces {
+    pub(crate) vertices: Vec<DVec3>,
+    /// Corner indices, counter-clockwise seen from outside.
+    pub(crate) faces: Vec<Vec<u32>>,
+}
+
 impl Boundary {
     pub(crate) const fn kind(&self) -> CompositeKind {
         match self {
-            Self::Triangles(_) => CompositeKind::Polyhedron,
+            Self::Triangles { .. } => CompositeKind::Polyhedron,
             Self::Prism { .. } => CompositeKind::Prism,
             Self::Lathe { .. } => CompositeKind::Lathe,
         }

@@ -5,6 +5,7 @@
 //! every constructor refuses what it cannot represent with a [`ShapeError`].
 
 mod boundary;
+mod bytes;
 mod composite;
 pub mod csg;
 mod frame;
@@ -21,6 +22,7 @@ mod sheet;
 mod solid;
 pub mod surface;
 
+pub use bytes::{ShapeWriter, Shapes};
 pub use composite::{Composite, CompositeFace, CompositeKind};
 pub use frame::{SceneFrame, finite_box};
 pub use identity::{FaceId, MaterialId, SurfaceId};

@@ -4,9 +4,11 @@
 //! polyhedra using binary space partitioning trees*, 1987): every cell between the faces' planes is
 //! inside or outside as a whole, so the planes decide, and two faces in one plane are one variable.
 
+use std::sync::Arc;
+
 use octray_math::{Aabb, DVec3};
 
-use crate::boundary::Boundary;
+use crate::boundary::{Boundary, Faces};
 use crate::composite::{Composite, CompositeFace};
 use crate::polygon::Triangulator;
 use crate::profile::{Formula, MAX_FORMULA_DEPTH};
@@ -66,7 +68,13 @@ pub(crate) fn polyhedron(vertices: &[DVec3], faces: &[Vec<u32>]) -> Result<Compo
             )
         })
         .collect();
-    let boundary = Boundary::Triangles(triangles.into());
+    let boundary = Boundary::Triangles {
+        triangles: triangles.into(),
+        source: Arc::new(Faces {
+            vertices: vertices.to_vec(),
+            faces: faces.to_vec(),
+        }),
+    };
     let mut partition = Partition {
         planes: &planes,
         tolerance,

@@ -205,6 +205,51 @@ impl ConvexPolyhedron {
         Ok(Self { planes, vertices })
     }
 
+    /// From planes and corners as they are.
+    ///
+    /// # Errors
+    /// A number is not finite, a normal has another length than 1, a corner lies outside of a
+    /// plane by more than 1e-6 of the size, a plane has fewer than three corners on it, or there are
+    /// fewer than four planes, or too many.
+    pub(crate) fn from_parts(
+        planes: Vec<(DVec3, f64)>,
+        vertices: Vec<DVec3>,
+    ) -> Result<Self, ShapeError> {
+        let made = Self { planes, vertices };
+        let bounds = made.bounds();
+        let finite = made.vertices.iter().all(|v| v.is_finite())
+            && made
+                .planes
+                .iter()
+                .all(|(n, d)| n.is_normalized() && d.is_finite());
+        if !finite || !bounds.is_bounded() {
+            return Err(ShapeError::BadPolyhedron("not finite"));
+        }
+        if made.planes.len() < 4 {
+            return Err(ShapeError::BadPolyhedron("open: it has fewer than 4 faces"));
+        }
+        let tests = made.planes.len().saturating_mul(made.vertices.len());
+        if tests > crate::solid::CONVEX_TESTS {
+            return Err(ShapeError::BadPolyhedron("too intricate"));
+        }
+        let tolerance = bounds.diagonal() * 1e-6;
+        for (normal, offset) in &made.planes {
+            let mut on_plane = 0;
+            for vertex in &made.vertices {
+                let height = normal.dot(*vertex) - offset;
+                let within = height <= tolerance;
+                if !within {
+                    return Err(ShapeError::BadPolyhedron("not convex"));
+                }
+                on_plane += usize::from(height >= -tolerance);
+            }
+            if on_plane < 3 {
+                return Err(ShapeError::BadPolyhedron("open: a face has no corners"));
+            }
+        }
+        Ok(made)
+    }
+
     /// The box around the corners.
     #[must_use]
     pub fn bounds(&self) -> Aabb {

@@ -77,7 +77,7 @@ fn positive(what: &'static str, value: f64) -> Result<f64, ShapeError> {
 }
 
 impl SolidNode {
-    fn children(&self) -> &[Solid] {
+    pub(crate) fn children(&self) -> &[Solid] {
         match self {
             Self::Empty | Self::Primitive(_) => &[],
             Self::Transformed { child, .. }
@@ -139,7 +139,7 @@ impl Drop for Measured {
 }
 
 /// Up to this product of faces and corners it is tried whether a polyhedron is convex.
-const CONVEX_TESTS: usize = 50_000_000;
+pub(crate) const CONVEX_TESTS: usize = 50_000_000;
 /// The deepest tree of solids that is worked on.
 pub const MAX_NESTING: u32 = 1000;
 /// The most operands a solid may have, shared subtrees counted at every use.

@@ -57,7 +57,7 @@ fn any(tree: &TriangleTree, queries: &[TriangleQuery], counts: impl Fn(u32) -> b
     tree.any_of(
         queries,
         memory,
-        |_, triangle, _| counts(triangle),
+        |_, found| counts(found.triangle),
         |index, met, _| answers[index] = met,
     );
     answers

@@ -29,6 +29,15 @@ impl Budget {
         !self.exhausted
     }
 
+    /// Takes the memory of so many more entries of a list at once, so that they need not be moved as
+    /// they become more; exhausted where there is not so much.
+    pub(crate) fn reserve<T>(&mut self, list: &mut Vec<T>, more: u64) {
+        let bytes = (size_of::<T>() as u64).saturating_mul(more);
+        if self.take(usize::try_from(bytes).unwrap_or(usize::MAX)) {
+            self.exhausted |= list.try_reserve_exact(more as usize).is_err();
+        }
+    }
+
     /// Whether [`Budget::take`] has failed.
     pub(crate) const fn is_exhausted(&self) -> bool {
         self.exhausted

@@ -40,7 +40,64 @@ pub fn view_all(bounds: &Aabb, up: DVec3) -> Option<Camera> {
 /// do not count; `None` if there are no others.
 #[must_use]
 pub fn view_scene(scene: &Scene) -> Option<Camera> {
-    let points = scene.objects().iter().flat_map(|object| {
+    let up = scene.settings().up;
+    Camera::view_points(outline(scene), view_direction(up), up, VERTICAL_FOV)
+}
+
+/// Where one looks at a part from, in a drawing.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Side {
+    /// At the front: from -y where z is up, from +z where y is up.
+    Front,
+    /// At the back.
+    Back,
+    /// At the side to the left of someone who looks at the front.
+    Left,
+    /// At the side to the right of someone who looks at the front.
+    Right,
+    /// From above, with the front below in the picture.
+    Top,
+    /// From below, with the front above in the picture.
+    Bottom,
+    /// Isometric, at the front, the right side and the top: equal lengths along the three axes look equal.
+    Iso,
+}
+
+impl Side {
+    /// All with their names.
+    pub const ALL: [(&'static str, Self); 7] = [
+        ("front", Self::Front),
+        ("back", Self::Back),
+        ("left", Self::Left),
+        ("right", Self::Right),
+        ("top", Self::Top),
+        ("bottom", Self::Bottom),
+        ("iso", Self::Iso),
+    ];
+}
+
+/// A parallel projection that shows all of a scene from a side. Unbounded objects do not count;
+/// `None` if there are no others.
+#[must_use]
+pub fn view_from(scene: &Scene, side: Side) -> Option<Camera> {
+    let up = scene.settings().up.normalize_or(DVec3::Z);
+    let (front, right) = horizontal_axes(up);
+    let (towards, above) = match side {
+        Side::Front => (front, up),
+        Side::Back => (-front, up),
+        Side::Left => (-right, up),
+        Side::Right => (right, up),
+        Side::Top => (up, -front),
+        Side::Bottom => (-up, front),
+        Side::Iso => (front + right + up, up),
+    };
+    Camera::project_points(outline(scene), -towards, above)
+}
+
+/// Points that have all bounded objects of a scene between them: vertices of meshes, corners of
+/// boxes around others.
+fn outline(scene: &Scene) -> impl Iterator<Item = DVec3> {
+    scene.objects().iter().flat_map(|object| {
         let bounds = object.shape.bounds();
         let corners = bounds.corners().into_iter();
         let corners = corners.take(if bounds.is_bounded() && !bounds.is_empty() {
@@ -62,9 +119,7 @@ pub fn view_scene(scene: &Scene) -> Option<Camera> {
             .into_iter()
             .flatten()
             .chain(vertices.into_iter().flatten())
-    });
-    let up = scene.settings().up;
-    Camera::view_points(points, view_direction(up), up, VERTICAL_FOV)
+    })
 }
 
 /// From the front, a little from the right and from above.
@@ -204,6 +259,60 @@ mod tests {
     }
 
     #[test]
+    fn from_each_side_a_box_fills_the_drawing() {
+        // Width, height and which way is up in the picture, of a box of 2 x 3 x 4 in a scene where
+        // z is up: textbook first views of a part.
+        let drawings = [
+            (Side::Front, [2.0, 4.0], DVec3::Y, DVec3::Z),
+            (Side::Back, [2.0, 4.0], DVec3::NEG_Y, DVec3::Z),
+            (Side::Left, [3.0, 4.0], DVec3::X, DVec3::Z),
+            (Side::Right, [3.0, 4.0], DVec3::NEG_X, DVec3::Z),
+            (Side::Top, [2.0, 3.0], DVec3::NEG_Z, DVec3::Y),
+            (Side::Bottom, [2.0, 3.0], DVec3::Z, DVec3::NEG_Y),
+        ];
+        let center = DVec3::new(7.0, -5.0, 30.0);
+        let mut builder = SceneBuilder::new();
+        let material = builder.add_material(default_material());
+        let part = Solid::cuboid(DVec3::new(-1.0, -1.5, -2.0), DVec3::new(1.0, 1.5, 2.0));
+        let part = part.and_then(|s| s.translate(center)).expect("valid");
+        builder.add_object(Object::solid("part", part, material));
+        let scene = builder.build().expect("valid");
+        for (side, [width, height], forward, above) in drawings {
+            let camera = view_from(&scene, side).expect("bounded");
+            assert_eq!(camera.projection, octray_scene::Projection::Orthographic);
+            assert!(camera.forward.abs_diff_eq(forward, 1e-12), "{side:?}");
+            assert!(camera.up.normalize().abs_diff_eq(above, 1e-12), "{side:?}");
+            assert!(camera.right.dot(camera.forward).abs() < 1e-12);
+            assert!(
+                camera.right.cross(camera.up).dot(camera.forward) < 0.0,
+                "not mirrored"
+            );
+            let shown = camera.up.length();
+            assert!(
+                (0.9..1.0).contains(&(f64::max(width, height) / shown)),
+                "{side:?}"
+            );
+            let to_center = center - camera.eye;
+            assert!(to_center.cross(camera.forward).length() < 1e-9, "{side:?}");
+            assert!(
+                to_center.dot(camera.forward) > 2.0,
+                "{side:?}: stands outside"
+            );
+        }
+        let iso = view_from(&scene, Side::Iso).expect("bounded");
+        let lengths = [DVec3::X, DVec3::Y, DVec3::Z].map(|axis| {
+            let across = [iso.right, iso.up].map(|side| side.normalize().dot(axis));
+            across[0].hypot(across[1])
+        });
+        for length in lengths {
+            assert!(
+                (length - (2.0_f64 / 3.0).sqrt()).abs() < 1e-12,
+                "{lengths:?}"
+            );
+        }
+    }
+
+    #[test]
     fn what_a_scene_has_is_kept() {
         let mut builder = ball_at(DVec3::ZERO, DVec3::Z).into_builder();
         let camera = Camera::look_at(DVec3::X * 9.0, DVec3::ZERO, DVec3::Z, 1.0).expect("valid");
@@ -219,6 +328,7 @@ mod tests {
     fn an_empty_scene_stays_empty() {
         let empty = SceneBuilder::new().build().expect("valid");
         assert!(view_scene(&empty).is_none());
+        assert!(view_from(&empty, Side::Top).is_none());
         let dressed = dress(empty);
         assert!(dressed.camera().is_none() && dressed.lights().is_empty());
     }

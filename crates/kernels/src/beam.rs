@@ -33,7 +33,7 @@ use boxes::{BoxSides, box_verdict, passes};
 use edges::{Edges, cull, prepare};
 
 use crate::slab::{Boxes8, Scalar, Vector, round_up};
-use crate::triangles::TriangleLine;
+use crate::triangles::{TriangleLine, WINDOW};
 
 /// Lines in a group.
 pub const GROUP: usize = 16;
@@ -214,7 +214,13 @@ pub trait BeamTest: Copy {
     fn test_box(self, beam: &BeamFrame, group: &Group, boxes: &Boxes8, lane: usize) -> u32;
 
     /// Prepares the triangles of a leaf; for `rows` see [`crate::TriangleTest`].
-    fn prepare(self, beam: &BeamFrame, rows: &[f32], count: usize, triangles: &mut BeamTriangles);
+    fn prepare(
+        self,
+        beam: &BeamFrame,
+        rows: &[f32; WINDOW],
+        count: usize,
+        triangles: &mut BeamTriangles,
+    );
 
     /// Bit `i` is set where a line of the group may meet triangle `i` before its end; `errors[i]` is
     /// what [`BeamTest::test_rays`] wants to know.
@@ -275,7 +281,13 @@ impl BeamTest for Scalar {
     }
 
     #[inline]
-    fn prepare(self, beam: &BeamFrame, rows: &[f32], count: usize, triangles: &mut BeamTriangles) {
+    fn prepare(
+        self,
+        beam: &BeamFrame,
+        rows: &[f32; WINDOW],
+        count: usize,
+        triangles: &mut BeamTriangles,
+    ) {
         for lane in 0..8 {
             prepare::<f32>((), beam, rows, count, lane, triangles);
         }
@@ -367,7 +379,13 @@ impl<S: Simd> BeamTest for Vector<S> {
     }
 
     #[inline(always)]
-    fn prepare(self, beam: &BeamFrame, rows: &[f32], count: usize, triangles: &mut BeamTriangles) {
+    fn prepare(
+        self,
+        beam: &BeamFrame,
+        rows: &[f32; WINDOW],
+        count: usize,
+        triangles: &mut BeamTriangles,
+    ) {
         prepare::<f32x8<S>>(self.0, beam, rows, count, 0, triangles);
     }
 

@@ -2,21 +2,20 @@
 //!
 //! # Why no box is missed
 //! Let `u = 2^-24` be half an ulp of `f32`. The line is `p + s d` with `p`, `d` in `f64`, the
-//! largest component of `d` in `[1, 2)`, and boxes in `f32`. A box *must* be reported if some
-//! `s` in `[s_min, s_max]` has `p + s d` inside the box grown by `slack` on every side.
+//! largest component of `d` in `[1, 2)`, and boxes in `f32` whose coordinates are at most `extent` in
+//! size. A box *must* be reported if some `s` in `[s_min, s_max]` has `p + s d` inside the box grown by
+//! `slack` on every side. Say that it is the one at `s`.
 //!
-//! 1. *Origin.* Per axis, `near` planes are measured from `p + slack` (for `d >= 0`) and `far` planes
-//!    from `p - slack`, the other way round for `d < 0`; both are moved outwards by `2u |p|` before they
-//!    become `f32`, which rounds by less.
-//!    With these origins and exact arithmetic the entry can only be too early, the exit too late.
-//!    The origins are floats now: from here on they are exact data.
-//! 2. *Arithmetic.* A plane's parameter is `(plane - origin) * inverse`: a difference, a product,
-//!    and the inverse itself, each rounded once, so it is off by a factor within
-//!    `(1 + u)^3 < 1 + 4u`. The largest of the entries is one of them, and so is the smallest of
-//!    the exits; hence `near - 8u |near|` and `far + 8u |far|`, each rounded twice more (at most
-//!    `2.1u` in relative terms), are still on the safe side. Products in the subnormal range are
-//!    off by up to `2^-149`; the half of `slack` that callers leave unused (it is at least
-//!    `2^-41`) covers this.
+//! 1. *Origin.* Per axis, `near` planes are measured from `q = p + m` (for `d >= 0`) and `far` planes
+//!    from `p - m`, the other way round for `d < 0`, with `m = slack + u (3.25 extent + 4.5 |p|)`. The
+//!    conversion of `q` to `f32` takes away at most `u |q|`. From there on `q` is exact data.
+//! 2. *Arithmetic.* A plane's parameter is `(plane - q) * inverse`: a difference, a product, and the
+//!    inverse itself, each rounded once, so it is off by at most `3.01 u |plane - q| / |d|`, which is less
+//!    than `3.01 u (extent + |p| + m) / |d|`. Without rounding the parameter of a near plane would be at
+//!    most `s - (m - u |q| - slack) / |d|`, and of a far plane as far behind `s`. So every near plane's is
+//!    below `s` and every far plane's above: `m` covers the conversion, the arithmetic and `slack`;
+//!    what is of second order, and products in the subnormal range, which are off by up to `2^-149`, the
+//!    half of `slack` covers that callers leave unused (it is at least `2^-41`).
 //! 3. *Components near zero.* For `|d| < 2^-100` (0 and the sign of 0 included) the inverse is
 //!    `+-2^100`. A line between the planes, or on one, sees the near plane strictly behind its
 //!    origin for that plane, at least one ulp of a number not below `slack` in size (a plane and
@@ -25,10 +24,11 @@
 //!    below `2^8` in size, because callers move `p` next to the boxes, which lie within
 //!    `[-16, 16]^3`; over such parameters the line moves by less than `2^-91`, far less than
 //!    `slack`.
-//! 4. *Comparisons* are exact. `s_min` is rounded down and `s_max` up.
+//! 4. *Comparisons* are exact. `s_min` is rounded down and `s_max` up; the entry is the largest of the
+//!    near planes' parameters and `s_min`, the exit the least of the far planes' and `s_max`.
 //!
-//! An empty slot has `min = inf`, `max = -inf`: the entry becomes NaN or infinite and no comparison
-//! with it holds, since origins are finite.
+//! An empty slot has `min = inf`, `max = -inf`: the entry is infinite and the exit infinitely far before
+//! it, since origins are finite.
 
 use bytemuck::{Pod, Zeroable};
 use fearless_simd::{Simd, SimdBase, SimdMask, f32x8};
@@ -66,22 +66,20 @@ impl Boxes8 {
 /// A line prepared for the test.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SlabRay {
-    /// Which of the six planes the line enters by, per axis.
-    near_plane: [usize; 3],
-    far_plane: [usize; 3],
+    /// Whether the line enters by the highest plane, per axis.
+    down: [bool; 3],
     near_origin: [f32; 3],
     far_origin: [f32; 3],
     inverse: [f32; 3],
 }
 
-/// The relative margin `8u` of the module's analysis.
-const MARGIN: f32 = 1.0 / (1 << 21) as f32;
+const U: f64 = 1.0 / (1 << 24) as f64;
 /// `2^100`.
 const STEEPEST: f64 = (1u128 << 100) as f64;
 
 /// The lowest `f32` that is not below `x`.
 #[must_use]
-#[inline]
+#[inline(always)]
 pub fn round_up(x: f64) -> f32 {
     let y = x as f32;
     if f64::from(y) < x { y.next_up() } else { y }
@@ -89,52 +87,58 @@ pub fn round_up(x: f64) -> f32 {
 
 /// The highest `f32` that is not above `x`.
 #[must_use]
-#[inline]
+#[inline(always)]
 pub fn round_down(x: f64) -> f32 {
     let y = x as f32;
     if f64::from(y) > x { y.next_down() } else { y }
 }
 
 impl SlabRay {
-    /// The line `origin + s * direction` near boxes within `[-16, 16]^3`.
+    /// The line `origin + s * direction` near boxes within `[-16, 16]^3` whose coordinates are at most
+    /// `extent` in size.
     ///
     /// `direction` has its largest component in `[1, 2)`; `origin` and `slack` are finite in
     /// `f32`, and `slack >= 2^-41`.
     #[must_use]
-    #[inline]
-    pub fn new(origin: [f64; 3], direction: [f64; 3], slack: f64) -> Self {
+    #[inline(always)]
+    pub fn new(origin: [f64; 3], direction: [f64; 3], extent: f64, slack: f64) -> Self {
         let mut ray = Self {
-            near_plane: [0; 3],
-            far_plane: [0; 3],
+            down: [false; 3],
             near_origin: [0.0; 3],
             far_origin: [0.0; 3],
             inverse: [0.0; 3],
         };
+        let slack = slack + 3.25 * U * extent;
         for axis in 0..3 {
             let (o, d) = (origin[axis], direction[axis]);
-            // More than the conversion rounds by; where `o` is small that is far less than the slack.
-            let outwards = slack + o.abs() * f64::from(f32::EPSILON);
+            let outwards = slack + 4.5 * U * o.abs();
             let (above, below) = ((o + outwards) as f32, (o - outwards) as f32);
             let inverse = (1.0 / d.abs()).min(STEEPEST) as f32;
-            if d < 0.0 {
-                (ray.near_plane[axis], ray.far_plane[axis]) = (axis + 3, axis);
-                (ray.near_origin[axis], ray.far_origin[axis]) = (below, above);
-                ray.inverse[axis] = -inverse;
-            } else {
-                (ray.near_plane[axis], ray.far_plane[axis]) = (axis, axis + 3);
-                (ray.near_origin[axis], ray.far_origin[axis]) = (above, below);
-                ray.inverse[axis] = inverse;
-            }
+            let down = d < 0.0;
+            ray.down[axis] = down;
+            ray.near_origin[axis] = if down { below } else { above };
+            ray.far_origin[axis] = if down { above } else { below };
+            ray.inverse[axis] = if down { -inverse } else { inverse };
         }
         ray
+    }
+
+    /// The planes by which the line enters boxes, and those by which it leaves them.
+    #[inline(always)]
+    const fn planes<'a>(&self, boxes: &'a Boxes8, axis: usize) -> [&'a [f32; 8]; 2] {
+        let (low, high) = (&boxes.planes[axis], &boxes.planes[axis + 3]);
+        if self.down[axis] {
+            [high, low]
+        } else {
+            [low, high]
+        }
     }
 }
 
 /// Which of eight boxes a line meets.
 pub trait BoxTest: Copy {
     /// Bit `i` of the mask is set where the line is in box `i` for some parameter of
-    /// `[s_min, s_max]` (or nearly so); `entries[i]` is then a lower bound of those parameters,
-    /// not cut at `s_min`.
+    /// `[s_min, s_max]` (or nearly so); `entries[i]` is then a lower bound of those parameters.
     fn test(
         self,
         ray: &SlabRay,
@@ -169,19 +173,17 @@ impl BoxTest for Scalar {
         let mut mask = 0;
         for (lane, entry) in entries.iter_mut().enumerate() {
             let near = |axis: usize| {
-                (boxes.planes[ray.near_plane[axis]][lane] - ray.near_origin[axis])
-                    * ray.inverse[axis]
+                let plane = ray.planes(boxes, axis)[0][lane];
+                (plane - ray.near_origin[axis]) * ray.inverse[axis]
             };
             let far = |axis: usize| {
-                (boxes.planes[ray.far_plane[axis]][lane] - ray.far_origin[axis]) * ray.inverse[axis]
+                let plane = ray.planes(boxes, axis)[1][lane];
+                (plane - ray.far_origin[axis]) * ray.inverse[axis]
             };
-            let enter = max(max(near(0), near(1)), near(2));
-            let leave = min(min(far(0), far(1)), far(2));
-            let enter = enter - enter.abs() * MARGIN;
-            let leave = leave + leave.abs() * MARGIN;
+            let enter = max(max(near(0), near(1)), max(near(2), s_min));
+            let leave = min(min(far(0), far(1)), min(far(2), s_max));
             *entry = enter;
-            let hit = enter <= leave && enter <= s_max && leave >= s_min;
-            mask |= u32::from(hit) << lane;
+            mask |= u32::from(enter <= leave) << lane;
         }
         mask
     }
@@ -198,23 +200,24 @@ impl<S: Simd> BoxTest for Vector<S> {
         entries: &mut [f32; 8],
     ) -> u32 {
         let simd = self.0;
-        let near = |axis: usize| {
-            let planes = f32x8::from_slice(simd, &boxes.planes[ray.near_plane[axis]]);
-            (planes - ray.near_origin[axis]) * ray.inverse[axis]
-        };
-        let far = |axis: usize| {
-            let planes = f32x8::from_slice(simd, &boxes.planes[ray.far_plane[axis]]);
-            (planes - ray.far_origin[axis]) * ray.inverse[axis]
-        };
-        let enter = near(0).max(near(1)).max(near(2));
-        let leave = far(0).min(far(1)).min(far(2));
-        let enter = enter - enter.abs() * MARGIN;
-        let leave = leave + leave.abs() * MARGIN;
+        // Written out: closures are not always inlined, and vectors must not go through calls.
+        let [near_x, far_x] = ray.planes(boxes, 0);
+        let [near_y, far_y] = ray.planes(boxes, 1);
+        let [near_z, far_z] = ray.planes(boxes, 2);
+        let load = |planes: &[f32; 8]| f32x8::from_slice(simd, planes);
+        let (near, far) = (&ray.near_origin, &ray.far_origin);
+        let near_x = (load(near_x) - near[0]) * ray.inverse[0];
+        let near_y = (load(near_y) - near[1]) * ray.inverse[1];
+        let near_z = (load(near_z) - near[2]) * ray.inverse[2];
+        let far_x = (load(far_x) - far[0]) * ray.inverse[0];
+        let far_y = (load(far_y) - far[1]) * ray.inverse[1];
+        let far_z = (load(far_z) - far[2]) * ray.inverse[2];
+        let first = f32x8::splat(simd, s_min);
+        let last = f32x8::splat(simd, s_max);
+        let enter = near_x.max(near_y).max(near_z.max(first));
+        let leave = far_x.min(far_y).min(far_z.min(last));
         enter.store_slice(entries);
-        let hit = enter.simd_le(leave)
-            & enter.simd_le(f32x8::splat(simd, s_max))
-            & leave.simd_ge(f32x8::splat(simd, s_min));
-        hit.to_bitmask() as u32
+        enter.simd_le(leave).to_bitmask() as u32
     }
 }
 

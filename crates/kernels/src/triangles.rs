@@ -37,8 +37,10 @@ use crate::slab::{Scalar, Vector, round_up};
 
 /// Floats per triangle: x of the three corners, then y, then z.
 pub const FLOATS: usize = 9;
-/// Floats that must follow the last triangle of an array.
-pub const PADDING: usize = 8;
+/// Floats of a leaf and what follows it, whatever its size.
+pub const WINDOW: usize = 8 * FLOATS + 8;
+/// Floats that must follow the last triangle of an array, so that every leaf has a window.
+pub const PADDING: usize = WINDOW - FLOATS;
 
 const U: f32 = 1.0 / (1 << 24) as f32;
 
@@ -69,15 +71,25 @@ pub struct Candidates {
     pub farthest: [f32; 8],
 }
 
+impl Candidates {
+    /// No triangle.
+    pub const NONE: Self = Self {
+        possible: 0,
+        certain: 0,
+        nearest: [0.0; 8],
+        farthest: [0.0; 8],
+    };
+}
+
 impl TriangleLine {
     /// The line `origin + s * direction` near vertices within `[-16, 16]^3`.
     ///
     /// `direction` has its largest component in `[1, 2)`; `origin` is finite in `f32`. What the exact
     /// test rounds amounts to less than half of `slack`, and `slack >= 2^-41`.
     #[must_use]
-    #[inline]
+    #[inline(always)]
     pub fn new(origin: [f64; 3], direction: [f64; 3], slack: f64) -> Self {
-        let size = direction.map(f64::abs);
+        let size = [direction[0].abs(), direction[1].abs(), direction[2].abs()];
         let z = if size[0] >= size[1] && size[0] >= size[2] {
             0
         } else if size[1] >= size[2] {
@@ -94,7 +106,7 @@ impl TriangleLine {
         let error = slack + u * (6.0 * depth.abs() + 3.0 * across[0].abs().max(across[1].abs()));
         Self {
             axes: [x, y, z],
-            shear: shear.map(|s| s as f32),
+            shear: [shear[0] as f32, shear[1] as f32],
             origin: [across[0] as f32, across[1] as f32, depth as f32],
             s_per_depth: per_depth as f32,
             error: round_up(error),
@@ -125,7 +137,8 @@ impl TriangleLine {
 
 /// Corners of the triangles of a leaf, from one lane on.
 struct Rows<'a, L: Lane> {
-    rows: &'a [f32],
+    rows: &'a [f32; WINDOW],
+    /// At most eight.
     count: usize,
     lane: usize,
     token: L::Token,
@@ -219,11 +232,11 @@ impl<L: Lane> Verdict<L> {
 /// Which of eight triangles a line crosses.
 pub trait TriangleTest: Copy {
     /// Tests the `count` triangles whose corners begin `rows`: `count` times x of corner 0, of
-    /// corner 1, of corner 2, then y and z. [`PADDING`] more floats must follow.
+    /// corner 1, of corner 2, then y and z. There are at most eight.
     fn test_triangles(
         self,
         line: &TriangleLine,
-        rows: &[f32],
+        rows: &[f32; WINDOW],
         count: usize,
         s_min: f32,
         s_max: f32,
@@ -236,14 +249,15 @@ impl TriangleTest for Scalar {
     fn test_triangles(
         self,
         line: &TriangleLine,
-        rows: &[f32],
+        rows: &[f32; WINDOW],
         count: usize,
         s_min: f32,
         s_max: f32,
         found: &mut Candidates,
     ) {
         (found.possible, found.certain) = (0, 0);
-        for lane in 0..count.min(8) {
+        let count = count.min(8);
+        for lane in 0..count {
             let one = Rows::<f32> {
                 rows,
                 count,
@@ -270,13 +284,14 @@ impl<S: Simd> TriangleTest for Vector<S> {
     fn test_triangles(
         self,
         line: &TriangleLine,
-        rows: &[f32],
+        rows: &[f32; WINDOW],
         count: usize,
         s_min: f32,
         s_max: f32,
         found: &mut Candidates,
     ) {
         let simd = self.0;
+        let count = count.min(8);
         let all = Rows::<f32x8<S>> {
             rows,
             count,

@@ -4,10 +4,11 @@
 //! otherwise, angles in radians inside and in degrees at the edges, `f64` wherever a result
 //! reaches the user. A transform is named for what it maps: `world_from_object`.
 //!
-//! Nothing here depends on another crate of ours, allocates per call, or can fail.
+//! Nothing here depends on another crate of ours; but for [`bytes`], nothing allocates or can fail.
 
 mod aabb;
 pub mod bernstein;
+pub mod bytes;
 mod cell_key;
 mod hash;
 mod interval;

@@ -5,6 +5,7 @@ use octray::world::{LvsiTable, Quality, TableSize, WorldConfig};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
+use crate::system::available_memory;
 use crate::world::method_called;
 
 /// What may be said about building; `None` leaves a default.
@@ -21,6 +22,21 @@ pub(crate) struct Building<'a, 'py> {
     pub(crate) load: Option<f64>,
 }
 
+/// The configuration for a method where nothing else is said: no structure takes more memory than
+/// there is.
+pub(crate) fn usual(accel: &str) -> PyResult<WorldConfig> {
+    let mut config = WorldConfig {
+        method: method_called(accel)?,
+        ..WorldConfig::default()
+    };
+    if let Some(bytes) = available_memory() {
+        let (cells, triangles) = (&mut config.criteria, &mut config.triangles);
+        cells.memory_limit = cells.memory_limit.min(bytes);
+        triangles.memory_limit = triangles.memory_limit.min(bytes);
+    }
+    Ok(config)
+}
+
 fn refused<T>(text: String) -> PyResult<T> {
     Err(PyValueError::new_err(text))
 }
@@ -28,10 +44,7 @@ fn refused<T>(text: String) -> PyResult<T> {
 impl Building<'_, '_> {
     /// The configuration for a method.
     pub(crate) fn config(&self, accel: &str) -> PyResult<WorldConfig> {
-        let mut config = WorldConfig {
-            method: method_called(accel)?,
-            ..WorldConfig::default()
-        };
+        let mut config = usual(accel)?;
         if let Some(quality) = self.quality {
             config.triangles.quality = match quality {
                 "fast" => Quality::Fast,

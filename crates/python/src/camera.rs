@@ -1,5 +1,6 @@
 //! Cameras.
 
+use octray::import::dress;
 use octray::math::DVec3;
 use octray::scene::{self, Projection, SceneBuilder};
 use pyo3::exceptions::PyValueError;
@@ -55,6 +56,28 @@ fn checked(camera: Option<scene::Camera>) -> PyResult<Camera> {
     valid
         .map(Camera::new)
         .ok_or_else(|| PyValueError::new_err("eye, target and up span no picture"))
+}
+
+/// A camera in front of a scene that sees everything.
+pub(crate) fn view_all(scene: &scene::Scene) -> PyResult<Camera> {
+    looking(dress::view_scene(scene))
+}
+
+/// A parallel projection of everything in a scene, from the side of this name.
+pub(crate) fn view_from(scene: &scene::Scene, name: &str) -> PyResult<Camera> {
+    let Some((_, side)) = dress::Side::ALL.iter().find(|(known, _)| *known == name) else {
+        let names = dress::Side::ALL.map(|(name, _)| name).join(", ");
+        return Err(PyValueError::new_err(format!(
+            "a scene is viewed from one of {names}, not {name:?}"
+        )));
+    };
+    looking(dress::view_from(scene, *side))
+}
+
+fn looking(camera: Option<scene::Camera>) -> PyResult<Camera> {
+    camera
+        .map(Camera::new)
+        .ok_or_else(|| PyValueError::new_err("there is nothing bounded in the scene to look at"))
 }
 
 #[pymethods]

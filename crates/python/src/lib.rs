@@ -7,6 +7,7 @@ mod building;
 mod camera;
 mod cells;
 mod check;
+mod checkpoint;
 mod convert;
 mod describe;
 mod diagnostics;
@@ -28,6 +29,7 @@ mod solid;
 mod structures;
 mod system;
 mod task;
+mod tiles;
 mod world;
 
 use pyo3::pymodule;
@@ -65,6 +67,8 @@ mod _core {
 
     #[pymodule_export]
     use super::system::{cpu_features, default_threads};
+    #[pymodule_export]
+    use super::tiles::{TileRenderer, TiledPicture};
     #[pymodule_export]
     use super::world::{method_name, methods};
 

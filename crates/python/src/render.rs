@@ -1,15 +1,21 @@
 //! Rendering from Python: arguments, progress, Ctrl-C, the report.
 
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::time::{Duration, Instant};
 
-use octray::render::{Crop, HeatMap, Observer, Plan, RenderConfig, RenderJob, Rendering, Shows};
+use octray::render::{
+    CheckpointError, Crop, HeatMap, Observer, Plan, RenderConfig, RenderError, RenderJob,
+    Rendering, Shows, Tile, TileFilm,
+};
 use octray::scene::{Camera, Settings, View};
 use octray::world::World;
 use pyo3::exceptions::{PyKeyboardInterrupt, PyValueError};
 use pyo3::prelude::*;
+use pyo3::types::PyDict;
 
+use crate::checkpoint::{self, Keeper};
 use crate::convert::value_error;
 use crate::image::{Image, view_named};
 use crate::pool::pool;
@@ -34,13 +40,17 @@ pub(crate) struct Request<'a, 'py> {
     pub(crate) preview: Option<&'a Bound<'py, PyAny>>,
     pub(crate) on_interrupt: &'a str,
     pub(crate) integrator: &'a str,
+    /// Where finished tiles are kept while it goes on.
+    pub(crate) checkpoint: Option<PathBuf>,
+    /// Whether to go on with what is there.
+    pub(crate) resume: bool,
 }
 
 /// Pictures of scenes that name no size.
 pub(crate) const DEFAULT_SIZE: (u32, u32) = (1280, 720);
 
 impl Request<'_, '_> {
-    fn config(&self, settings: &Settings) -> PyResult<RenderConfig> {
+    pub(crate) fn config(&self, settings: &Settings) -> PyResult<RenderConfig> {
         let crop = match self.crop {
             None => None,
             Some((x0, y0, x1, y1)) if x0 < x1 && y0 < y1 => Some(Crop {
@@ -124,6 +134,8 @@ pub(crate) fn check_request(
         preview: None,
         on_interrupt: "raise",
         integrator,
+        checkpoint: None,
+        resume: false,
     };
     pool(threads)?;
     let settings = Settings::default();
@@ -136,12 +148,19 @@ struct Watch<'a> {
     cancel: &'a AtomicBool,
     done: &'a AtomicU64,
     total: &'a AtomicU64,
+    keeper: Option<&'a Keeper>,
 }
 
 impl Observer for Watch<'_> {
     fn progress(&self, done: u64, total: u64) {
         self.total.store(total, Ordering::Relaxed);
         self.done.store(done, Ordering::Relaxed);
+    }
+
+    fn finished(&self, tile: &Tile, light: &TileFilm) {
+        if let Some(keeper) = self.keeper {
+            keeper.keep(tile, light);
+        }
     }
 
     fn cancelled(&self) -> bool {
@@ -157,23 +176,55 @@ struct Job {
     pool: Arc<rayon::ThreadPool>,
     done: Arc<AtomicU64>,
     total: Arc<AtomicU64>,
+    keeper: Option<Keeper>,
+    /// Records of a checkpoint of this picture.
+    before: Option<Vec<u8>>,
 }
 
-type Outcome = Result<(Rendering, Duration), octray::render::RenderError>;
+/// What became of the picture, and of its checkpoint.
+struct Done {
+    rendering: Rendering,
+    duration: Duration,
+    resumed_pixels: u64,
+    /// What went wrong with the file, and whether it is there.
+    checkpoint: Option<(Option<String>, bool)>,
+}
+
+/// Why there is no picture.
+enum Failure {
+    Request(RenderError),
+    Checkpoint(CheckpointError),
+}
+
+type Outcome = Result<Done, Failure>;
 
 impl Job {
-    fn run(&self, cancel: &AtomicBool, send: &dyn Fn(octray::render::Image)) -> Outcome {
+    fn run(mut self, cancel: &AtomicBool, send: &dyn Fn(octray::render::Image)) -> Outcome {
+        let keeper = self.keeper.take();
         let watch = Watch {
             cancel,
             done: &self.done,
             total: &self.total,
+            keeper: keeper.as_ref(),
         };
         let start = Instant::now();
-        let mut job = RenderJob::new(&self.world, self.camera.as_ref(), &self.config)?;
+        let mut job = RenderJob::new(&self.world, self.camera.as_ref(), &self.config)
+            .map_err(Failure::Request)?;
+        if let Some(before) = &self.before {
+            job.resume(before).map_err(Failure::Checkpoint)?;
+        }
+        let resumed_pixels = job.film().complete_pixels();
         while self.pool.install(|| job.run_pass(&watch)) {
             send(job.preview());
         }
-        Ok((job.finish(), start.elapsed()))
+        let (rendering, duration) = (job.finish(), start.elapsed());
+        let needed = !rendering.is_complete();
+        Ok(Done {
+            resumed_pixels,
+            duration,
+            checkpoint: keeper.map(|keeper| keeper.end(needed)),
+            rendering,
+        })
     }
 }
 
@@ -187,14 +238,38 @@ pub(crate) fn render(scene: &Bound<'_, Scene>, request: &Request<'_, '_>) -> PyR
         (scene.settings().clone(), scene.own_camera())
     };
     let config = request.config(&settings)?;
-    config.plan(&settings).map_err(value_error)?;
+    let plan = config.plan(&settings).map_err(value_error)?;
+    if request.checkpoint.is_some() && plan.shows == Shows::Cost {
+        return Err(PyValueError::new_err(
+            "costs depend on the method: a picture of them has no checkpoint",
+        ));
+    }
     let view = view.unwrap_or(settings.view);
     let prepared = prepared(scene, request.accel, request.threads)?;
 
     let pool = pool(request.threads)?;
     let threads = pool.current_num_threads();
     let (done, total) = (Arc::new(AtomicU64::new(0)), Arc::new(AtomicU64::new(0)));
+    let before = match &request.checkpoint {
+        Some(path) if request.resume => before(py, path, &prepared.world, camera, &plan)?,
+        _ => None,
+    };
+    let keeper = match &request.checkpoint {
+        Some(path) => {
+            let world = Arc::clone(&prepared.world);
+            Some(Keeper::start(
+                path.clone(),
+                world,
+                camera,
+                plan,
+                before.clone(),
+            )?)
+        }
+        None => None,
+    };
     let job = Job {
+        keeper,
+        before,
         world: Arc::clone(&prepared.world),
         camera,
         config,
@@ -223,7 +298,18 @@ pub(crate) fn render(scene: &Bound<'_, Scene>, request: &Request<'_, '_>) -> PyR
             stopped = Some(error);
         }
     };
-    let (rendering, duration) = outcome.map_err(value_error)?;
+    let Done {
+        rendering,
+        duration,
+        resumed_pixels,
+        checkpoint,
+    } = outcome.map_err(|failure| match failure {
+        Failure::Request(error) => value_error(error),
+        Failure::Checkpoint(error) => {
+            let path = request.checkpoint.clone().unwrap_or_default();
+            checkpoint::unusable(&path, &error)
+        }
+    })?;
     match stopped {
         Some(error) if !(keeps_partial && error.is_instance_of::<PyKeyboardInterrupt>(py)) => {
             return Err(error);
@@ -243,6 +329,14 @@ pub(crate) fn render(scene: &Bound<'_, Scene>, request: &Request<'_, '_>) -> PyR
     });
     let high = heat.as_ref().map(|heat| heat.top);
     let report = report::rendering(py, &rendering, &prepared, duration, threads, high)?;
+    let about = PyDict::new(py);
+    if let (Some(path), Some((error, exists))) = (&request.checkpoint, checkpoint) {
+        about.set_item("path", path.display().to_string())?;
+        about.set_item("exists", exists)?;
+        about.set_item("error", error)?;
+        about.set_item("resumed_pixels", resumed_pixels)?;
+    }
+    report.bind(py).set_item("checkpoint", about)?;
     let image = Image::new(picture, view, complete, Some(report));
     Ok(match heat {
         Some(heat) => image.with_heat(heat.image),
@@ -250,8 +344,24 @@ pub(crate) fn render(scene: &Bound<'_, Scene>, request: &Request<'_, '_>) -> PyR
     })
 }
 
+/// The records of a checkpoint of this picture, if there is one.
+fn before(
+    py: Python<'_>,
+    path: &Path,
+    world: &World,
+    camera: Option<Camera>,
+    plan: &Plan,
+) -> PyResult<Option<Vec<u8>>> {
+    let Some(bytes) = checkpoint::read(path)? else {
+        return Ok(None);
+    };
+    let job = py.detach(|| checkpoint::job_id(world.scene(), camera.as_ref(), plan));
+    let records = checkpoint::records(path, &bytes, &job)?;
+    Ok(Some(records.to_vec()))
+}
+
 /// The heat map of a picture of costs.
-fn heat_map(plan: &Plan, picture: &octray::render::Image) -> Option<HeatMap> {
+pub(crate) fn heat_map(plan: &Plan, picture: &octray::render::Image) -> Option<HeatMap> {
     (plan.shows == Shows::Cost).then(|| HeatMap::of_costs(picture))
 }
 

@@ -10,7 +10,7 @@ use pyo3::types::PyDict;
 use crate::structures;
 use crate::world::Prepared;
 
-fn rays<'py>(py: Python<'py>, counts: &RayCounts) -> PyResult<Bound<'py, PyDict>> {
+pub(crate) fn rays<'py>(py: Python<'py>, counts: &RayCounts) -> PyResult<Bound<'py, PyDict>> {
     let dict = PyDict::new(py);
     for (kind, count) in counts.named() {
         dict.set_item(kind, count)?;
@@ -45,7 +45,7 @@ fn tests_by_kind<'py>(py: Python<'py>, stats: &RenderStats) -> PyResult<Bound<'p
 }
 
 /// What the colours of a heat map mean.
-fn heat_scale(py: Python<'_>, high: f64) -> PyResult<Bound<'_, PyDict>> {
+pub(crate) fn heat_scale(py: Python<'_>, high: f64) -> PyResult<Bound<'_, PyDict>> {
     let weights = PyDict::new(py);
     let [step, surface, triangle] = COST_WEIGHTS.to_array();
     weights.set_item("step", step)?;

@@ -1,22 +1,22 @@
 //! The scene: a builder that Python code adds to.
 
+mod state;
+
 use std::path::PathBuf;
 
 use numpy::PyArrayDyn;
 use octray::geometry::Sheet;
-use octray::import::dress;
-use octray::scene::{self, SceneBuilder, SceneError, Settings, Shape};
-use octray::world::Method;
+use octray::scene::{SceneBuilder, Shape};
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
-use pyo3::types::{PyDict, PyList};
+use pyo3::types::{PyBytes, PyDict, PyList};
 
 use crate::background;
 use crate::building::Building;
 use crate::camera::Camera;
 use crate::cells::{self, Cells};
 use crate::convert::{Triple, vector};
-use crate::diagnostics::{Diagnostic, invalid_scene};
+use crate::diagnostics::Diagnostic;
 use crate::image::Image;
 use crate::instances;
 use crate::light::Light;
@@ -26,7 +26,7 @@ use crate::queries::{self, Crossings, Hits, Intersections};
 use crate::render::{self, Request};
 use crate::solid::Solid;
 use crate::structures;
-use crate::world::{Prepared, completed, prepare, prepared, read_cells, write_cells};
+use crate::world::{Prepared, prepare, prepared, read_cells, write_cells};
 
 /// Objects, lights, a camera and a background.
 #[pyclass(module = "octray")]
@@ -39,61 +39,6 @@ pub(crate) struct Scene {
     /// Counts the changes, so that a world made meanwhile is known to be stale.
     revision: u64,
     prepared: Option<Prepared>,
-}
-
-impl Scene {
-    pub(crate) fn imported(scene: scene::Scene, diagnostics: Vec<Diagnostic>) -> Self {
-        Self {
-            builder: scene.into_builder(),
-            diagnostics,
-            imported: true,
-            ..Self::default()
-        }
-    }
-
-    /// The scene as it stands, validated, with what a picture needs and it lacks.
-    pub(crate) fn complete(&self, py: Python<'_>) -> PyResult<scene::Scene> {
-        let built = self.builder.clone().build();
-        let plain = built.map_err(|errors: Vec<SceneError>| invalid_scene(py, &errors))?;
-        Ok(completed(plain, !self.imported))
-    }
-
-    /// The scene as it stands, not validated.
-    pub(crate) const fn so_far(&self) -> &scene::Scene {
-        self.builder.so_far()
-    }
-
-    pub(crate) fn settings(&self) -> &Settings {
-        self.builder.so_far().settings()
-    }
-
-    pub(crate) fn own_camera(&self) -> Option<scene::Camera> {
-        self.builder.so_far().camera().copied()
-    }
-
-    /// Keeps what an importer said.
-    pub(crate) fn said(&mut self, diagnostics: Vec<Diagnostic>) {
-        self.diagnostics.extend(diagnostics);
-    }
-
-    pub(crate) const fn revision(&self) -> u64 {
-        self.revision
-    }
-
-    pub(crate) fn prepared(&self, method: Method) -> Option<&Prepared> {
-        self.prepared.as_ref().filter(|p| p.method == method)
-    }
-
-    pub(crate) fn keep(&mut self, prepared: Prepared) {
-        self.prepared = Some(prepared);
-    }
-
-    /// The builder, for a change that a world made before does not know of.
-    pub(crate) fn changed(&mut self) -> &mut SceneBuilder {
-        self.revision += 1;
-        self.prepared = None;
-        &mut self.builder
-    }
 }
 
 #[pymethods]
@@ -242,10 +187,16 @@ impl Scene {
 
     /// Puts a camera where it sees everything, from the front and a little from above.
     fn view_all(&mut self) -> PyResult<()> {
-        let camera = dress::view_scene(self.builder.so_far()).ok_or_else(|| {
-            PyValueError::new_err("there is nothing bounded in the scene to look at")
-        })?;
-        self.set_camera(&Camera::new(camera));
+        let camera = crate::camera::view_all(self.builder.so_far())?;
+        self.set_camera(&camera);
+        Ok(())
+    }
+
+    /// Puts a camera that sees everything in a parallel projection from a side: "front", "back",
+    /// "left", "right", "top", "bottom" or "iso".
+    fn view_from(&mut self, side: &str) -> PyResult<()> {
+        let camera = crate::camera::view_from(self.builder.so_far(), side)?;
+        self.set_camera(&camera);
         Ok(())
     }
 
@@ -376,11 +327,31 @@ impl Scene {
         cells::cells(slf, accel, kind, threads)
     }
 
+    /// The scene as bytes, with the camera and the lights that a picture of it gets: for other
+    /// processes and machines. The same scene gives the same bytes.
+    fn to_bytes<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyBytes>> {
+        let plain = self.complete(py)?;
+        Ok(PyBytes::new(py, &py.detach(|| plain.to_bytes())))
+    }
+
+    /// The scene that `to_bytes` gave, from bytes or an array of uint8. A ValueError says what is
+    /// wrong with them.
+    #[staticmethod]
+    fn from_bytes(py: Python<'_>, data: &Bound<'_, PyAny>) -> PyResult<Self> {
+        Ok(Self::imported(
+            crate::load::from_bytes(py, data)?,
+            Vec::new(),
+        ))
+    }
+
     /// Renders a picture: of light, or with `integrator="cost"` of what the same rays cost.
+    ///
+    /// `checkpoint` names a file that keeps what is finished while it takes long, and is removed at
+    /// the end; with `resume` the rendering goes on with it. A ValueError says that it is of another.
     #[pyo3(signature = (
         *, size = None, spp = 1, threads = None, accel = "auto", crop = None, view = None,
         max_depth = None, threshold = None, seed = 0, progress = None, preview = None,
-        on_interrupt = "raise", integrator = "whitted"
+        on_interrupt = "raise", integrator = "whitted", checkpoint = None, resume = false
     ))]
     #[expect(clippy::too_many_arguments, reason = "all by keyword")]
     fn render(
@@ -398,6 +369,8 @@ impl Scene {
         preview: Option<&Bound<'_, PyAny>>,
         on_interrupt: &str,
         integrator: &str,
+        checkpoint: Option<PathBuf>,
+        resume: bool,
     ) -> PyResult<Image> {
         let request = Request {
             size,
@@ -413,6 +386,8 @@ impl Scene {
             preview,
             on_interrupt,
             integrator,
+            checkpoint,
+            resume,
         };
         render::render(slf, &request)
     }

@@ -7,10 +7,13 @@ use std::time::{Duration, Instant};
 use octray::import::dress;
 use octray::math::{Aabb, DVec3};
 use octray::scene;
-use octray::world::{CellList, CellListError, Method, MethodError, World, WorldConfig, WorldError};
-use pyo3::exceptions::{PyRuntimeError, PyValueError};
+use octray::world::{
+    CellList, CellListError, Method, MethodError, WideTreeError, World, WorldConfig, WorldError,
+};
+use pyo3::exceptions::{PyMemoryError, PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
 
+use crate::building::usual;
 use crate::diagnostics::invalid_scene;
 use crate::files;
 use crate::image::os_error;
@@ -50,10 +53,7 @@ pub(crate) fn prepared(
     accel: &str,
     threads: Option<usize>,
 ) -> PyResult<Prepared> {
-    let config = WorldConfig {
-        method: method_called(accel)?,
-        ..WorldConfig::default()
-    };
+    let config = usual(accel)?;
     let known = scene.try_borrow()?.prepared(config.method).cloned();
     known.map_or_else(|| prepare(scene, config, None, threads), Ok)
 }
@@ -111,6 +111,10 @@ pub(crate) fn prepare(
     .inspect_err(|_| crate::pool::discard())?;
     let world = world.map_err(|error| match error {
         WorldError::Cells(error) => unusable(&path.unwrap_or_default(), &error),
+        WorldError::Triangles(WideTreeError::Memory { .. })
+        | WorldError::Instances(WideTreeError::Memory { .. }) => {
+            PyMemoryError::new_err(error.to_string())
+        }
         error => invalid_scene(py, &[error]),
     })?;
     let prepared = Prepared {

@@ -6,14 +6,16 @@ use octray_scene::{Camera, Encoding};
 use octray_world::World;
 use rayon::prelude::*;
 
+use crate::checkpoint::{CheckpointError, place_records, tile_record};
 use crate::image::Image;
 use crate::integrator::Whitted;
-use crate::tile::Tile;
+use crate::tile::{Tile, TileFilm};
 use crate::tile_renderer::{TileRenderer, TileResult};
 use crate::{Film, Plan, PrimaryRays, RenderConfig, RenderError, RenderStats, Shows};
 
-/// Pixels along the edge of a tile of the last pass, a multiple of 2.
-const TILE_EDGE: u32 = 32;
+/// Pixels along the edge of a tile of the last pass, a multiple of 2; where pixels have many
+/// samples, fewer.
+const TILE_EDGES: [(u32, u32); 3] = [(256, 8), (16, 16), (1, 32)];
 /// Pixels, of those that a coarse pass renders, along the edge of its tiles.
 const COARSE_TILE_EDGE: u32 = 16;
 /// Distances of the pixels in the passes of a progressive rendering.
@@ -25,6 +27,11 @@ pub trait Observer: Sync {
     /// `done` of `total` pixels are finished. Called by one thread at a time; never decreases.
     fn progress(&self, done: u64, total: u64) {
         let _ = (done, total);
+    }
+
+    /// All of a tile's pixels are finished.
+    fn finished(&self, tile: &Tile, light: &TileFilm) {
+        let _ = (tile, light);
     }
 
     /// Whether to stop as soon as possible.
@@ -46,6 +53,7 @@ pub struct RenderJob<'a> {
     stats: RenderStats,
     done: u64,
     passes_left: &'static [u32],
+    resumed: bool,
     cancelled: bool,
 }
 
@@ -105,8 +113,24 @@ impl<'a> RenderJob<'a> {
             } else {
                 &PASSES[PASSES.len() - 1..]
             },
+            resumed: false,
             cancelled: false,
         })
+    }
+
+    /// Takes over the tiles of a [`Checkpoint`](crate::Checkpoint) of this picture: they are not
+    /// rendered again.
+    ///
+    /// # Errors
+    /// A record is damaged or not of this picture; those before it have been taken.
+    pub fn resume<'r>(
+        &mut self,
+        records: &'r [u8],
+    ) -> Result<Vec<(Tile, &'r [u8])>, CheckpointError> {
+        self.resumed = true;
+        let placed = place_records(records, &mut self.film);
+        self.done = self.film.complete_pixels();
+        placed
     }
 
     /// Renders the next pass; returns whether there is another one. Without
@@ -118,12 +142,15 @@ impl<'a> RenderJob<'a> {
         let refines = self.plan.progressive && *stride != PASSES[0];
         self.passes_left = later;
         let edge = if *stride == 1 {
-            TILE_EDGE
+            self.plan.tile_edge()
         } else {
             COARSE_TILE_EDGE
         };
         let crop = self.plan.crop;
-        let tiles = Tile::cover((crop.width, crop.height), edge, *stride, refines);
+        let mut tiles = Tile::cover((crop.width, crop.height), edge, *stride, refines);
+        if self.resumed {
+            tiles.retain(|tile| !self.film.has(tile));
+        }
         let (world, plan, rays) = (self.world, &self.plan, &self.rays);
         let integrator = Whitted::new(world, plan);
         let total = u64::from(crop.width) * u64::from(crop.height);
@@ -135,6 +162,9 @@ impl<'a> RenderJob<'a> {
                     return;
                 }
                 let result = renderer.render(tile);
+                if result.is_whole() {
+                    observer.finished(tile, &result.film);
+                }
                 let mut shared = shared.lock().unwrap_or_else(PoisonError::into_inner);
                 let (film, stats, done) = &mut *shared;
                 **done += take(film, tile, &result);
@@ -179,12 +209,69 @@ impl<'a> RenderJob<'a> {
     }
 }
 
-/// Moves the finished pixels of a tile to the film; returns how many there were.
+/// Moves the finished pixels of a tile to the film; returns how many it did not have before.
 fn take(film: &mut Film, tile: &Tile, result: &TileResult) -> u64 {
+    let mut new = 0;
     for pixel in tile.pixels().take(result.finished) {
+        new += u64::from(!film.is_complete(pixel.0, pixel.1));
         film.finish_pixel(pixel, result.film.sums(pixel));
     }
-    result.finished as u64
+    new
+}
+
+impl Plan {
+    /// Pixels along the edge of the tiles that are rendered at once.
+    #[must_use]
+    pub fn tile_edge(&self) -> u32 {
+        let edge = TILE_EDGES.iter().find(|(least, _)| self.spp >= *least);
+        edge.map_or(TILE_EDGES[2].1, |(_, edge)| *edge)
+    }
+
+    /// The tiles of the whole picture: whoever renders them all, in whatever order and wherever,
+    /// has the picture.
+    #[must_use]
+    pub fn tiles(&self) -> Vec<Tile> {
+        let size = (self.crop.width, self.crop.height);
+        Tile::cover(size, self.tile_edge(), 1, false)
+    }
+}
+
+/// Renders some tiles of a picture in the current rayon pool; gives their records for
+/// [`place_records`], in the order of the tiles. Those that were not finished when the observer cancelled are left
+/// out.
+///
+/// # Errors
+/// There is no camera, or it is not finite.
+pub fn render_tiles(
+    world: &World,
+    plan: &Plan,
+    tiles: &[Tile],
+    observer: &dyn Observer,
+) -> Result<(Vec<u8>, RenderStats), RenderError> {
+    let camera = world.scene().camera().ok_or(RenderError::NoCamera)?;
+    let rays = PrimaryRays::new(camera, plan.size)?;
+    let integrator = Whitted::new(world, plan);
+    let parts: Vec<Option<(Vec<u8>, RenderStats)>> = tiles
+        .par_iter()
+        .map_init(
+            || TileRenderer::new(world, &integrator, &rays, plan, observer),
+            |renderer, tile| {
+                if observer.cancelled() {
+                    return None;
+                }
+                let result = renderer.render(tile);
+                let whole = result.is_whole();
+                whole.then(|| (tile_record(tile, &result.film), result.stats))
+            },
+        )
+        .collect();
+    let mut stats = RenderStats::default();
+    let mut records = Vec::new();
+    for (record, own) in parts.into_iter().flatten() {
+        records.extend_from_slice(&record);
+        stats += own;
+    }
+    Ok((records, stats))
 }
 
 impl Rendering {

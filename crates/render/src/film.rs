@@ -51,6 +51,21 @@ impl PixelSums {
         }
     }
 
+    /// Red, green and blue of the even samples, then of the odd ones, in units of 2^-24.
+    #[must_use]
+    pub const fn channels(&self) -> [i64; 6] {
+        let [[a, b, c], [d, e, f]] = self.halves;
+        [a, b, c, d, e, f]
+    }
+
+    /// What [`PixelSums::channels`] gave.
+    #[must_use]
+    pub const fn from_channels([a, b, c, d, e, f]: [i64; 6]) -> Self {
+        Self {
+            halves: [[a, b, c], [d, e, f]],
+        }
+    }
+
     /// Mean of `samples` samples, 0 for none.
     #[must_use]
     pub fn mean(&self, samples: u32) -> DVec3 {
@@ -116,6 +131,12 @@ impl Film {
         let index = self.index(x, y);
         self.sums[index] = sums;
         self.samples[index] = self.samples_wanted;
+    }
+
+    /// Whether all pixels of a tile have all their samples.
+    #[must_use]
+    pub fn has(&self, tile: &crate::Tile) -> bool {
+        tile.pixels().all(|(x, y)| self.is_complete(x, y))
     }
 
     /// Mean light of the pixel `(x, y)` of the crop, 0 where nothing has been added.

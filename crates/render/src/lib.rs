@@ -7,6 +7,7 @@
 
 pub mod bsdf;
 mod camera;
+mod checkpoint;
 mod config;
 mod cost;
 mod driver;
@@ -21,11 +22,14 @@ mod tile;
 mod tile_renderer;
 
 pub use camera::PrimaryRays;
+pub use checkpoint::{
+    Checkpoint, CheckpointError, JobId, checkpoint_records, place_records, tile_record,
+};
 pub use config::{
     Crop, MAX_EDGE, MAX_GENERATIONS, MAX_SPP, Plan, RenderConfig, RenderError, Shows,
 };
 pub use cost::{Ledger, cost_channels};
-pub use driver::{Observer, RenderJob, Rendering, render};
+pub use driver::{Observer, RenderJob, Rendering, render, render_tiles};
 pub use film::{Film, MAX_CONTRIBUTION, PixelSums};
 pub use image::{
     COST_WEIGHTS, HeatMap, Image, ImageError, develop, develop_color, encode_exr, encode_png,

@@ -115,6 +115,12 @@ impl TileFilm {
         }
     }
 
+    /// The tile that it is for.
+    #[must_use]
+    pub const fn tile(&self) -> &Tile {
+        &self.tile
+    }
+
     /// Adds the light that `state` brings to its pixel, which is one of the tile's.
     pub fn add(&mut self, state: &impl OfPixel, light: DVec3, stats: &mut RenderStats) {
         let (pixel, odd) = state.pixel();

@@ -43,6 +43,13 @@ pub(crate) struct TileResult {
     pub(crate) stats: RenderStats,
 }
 
+impl TileResult {
+    /// Whether all pixels of the tile are finished.
+    pub(crate) fn is_whole(&self) -> bool {
+        self.finished == self.film.tile().pixels().count()
+    }
+}
+
 impl<'a> TileRenderer<'a> {
     pub(crate) fn new(
         world: &'a World,

@@ -33,6 +33,9 @@ pub enum Projection {
     Orthographic,
 }
 
+/// Share of the picture that what is to be seen may take.
+const FILL: f64 = 0.92;
+
 impl Camera {
     /// A pinhole at `eye` that sees `target` in the middle, `up` upwards, `vertical_fov` radians
     /// from the bottom to the top of the picture.
@@ -102,8 +105,6 @@ impl Camera {
         up: DVec3,
         vertical_fov: f64,
     ) -> Option<Self> {
-        /// Share of the picture that the points may take.
-        const FILL: f64 = 0.92;
         let forward = direction.try_normalize()?;
         let mut camera = Self::look_at(DVec3::ZERO, forward, up, vertical_fov)?;
         let slope = FILL * libm::tan(0.5 * vertical_fov);
@@ -130,6 +131,40 @@ impl Camera {
         let [x, y] = [0, 1].map(|axis| 0.5 * low[axis] + 0.5 * high[axis]);
         camera.eye = sides[0] * x + sides[1] * y + forward * depth;
         camera.eye.is_finite().then_some(camera)
+    }
+
+    /// A parallel projection of points along `direction` (any length): they lie in the middle and
+    /// fill the picture in one direction, in any picture that is not higher than wide.
+    ///
+    /// `None` without points, or where `up` points along `direction`.
+    #[must_use]
+    pub fn project_points(
+        points: impl IntoIterator<Item = DVec3>,
+        direction: DVec3,
+        up: DVec3,
+    ) -> Option<Self> {
+        let forward = direction.try_normalize()?;
+        let unit = Self::orthographic(DVec3::ZERO, forward, up, 1.0)?;
+        let axes = [unit.right, unit.up, forward];
+        let (low, high) = points.into_iter().fold(
+            (DVec3::INFINITY, DVec3::NEG_INFINITY),
+            |(low, high), point| {
+                let place = DVec3::from_array(axes.map(|axis| point.dot(axis)));
+                (low.min(place), high.max(place))
+            },
+        );
+        let size = high - low;
+        let extent = if size.x.max(size.y) > 0.0 {
+            size.x.max(size.y)
+        } else {
+            // A single point, or points in one line of sight.
+            1.0
+        };
+        let middle = 0.5 * low + 0.5 * high;
+        let depth = low.z - extent;
+        let eye = axes[0] * middle.x + axes[1] * middle.y + forward * depth;
+        Self::orthographic(eye, eye + forward * extent, up, extent / FILL)
+            .filter(|camera| camera.eye.is_finite())
     }
 }
 

@@ -4,6 +4,7 @@
 //! Colours are linear Rec. 709 unless [`Encoding`] says otherwise; lengths have the scene's unit.
 
 mod builder;
+mod bytes;
 mod camera;
 mod instances;
 mod light;
@@ -12,6 +13,7 @@ mod object;
 mod srgb;
 
 pub use builder::{Scene, SceneBuilder, SceneError, Settings};
+pub use bytes::SceneBytesError;
 pub use camera::{Camera, Projection};
 pub use instances::{Instances, InstancesError, Prototype};
 pub use light::{Falloff, Light, LightKind};

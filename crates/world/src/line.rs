@@ -8,6 +8,7 @@ use crate::{Departure, RayQuery};
 
 /// The bits of a positive number that say its power of two.
 const EXPONENT_BITS: u64 = 0x7ff0_0000_0000_0000;
+const ONE_BITS: u64 = 1.0_f64.to_bits();
 
 /// More than a few roundings.
 const LIMIT_ROUNDING: f64 = 1.0 / (1u64 << 49) as f64;
@@ -17,8 +18,9 @@ const LIMIT_ROUNDING: f64 = 1.0 / (1u64 << 49) as f64;
 pub(crate) struct Place {
     pub(crate) frame: SceneFrame,
     center: DVec3,
-    /// A 256th of the power of two below the scene's size.
+    /// A 256th of the power of two below the scene's size, and its reciprocal.
     step: f64,
+    per_step: f64,
 }
 
 impl Place {
@@ -41,19 +43,21 @@ impl Place {
         } else {
             bounds.center() - frame.origin
         };
+        let step = libm::ldexp(1.0, libm::ilogb(frame.size) - 8);
         Self {
             frame,
             center,
-            step: libm::ldexp(1.0, libm::ilogb(frame.size) - 8),
+            step,
+            per_step: step.recip(),
         }
     }
 
     /// `shift` to within a 512th of the scene's size, as a short number: a line whose coordinates
     /// are short numbers then has an exact origin, and crosses the planes that meet in an edge at
     /// one parameter if it goes through the edge.
-    #[inline]
+    #[inline(always)]
     fn short(&self, shift: f64) -> f64 {
-        let steps = (shift / self.step).round_ties_even();
+        let steps = (shift * self.per_step).round_ties_even();
         if steps.is_finite() {
             steps * self.step
         } else {
@@ -62,6 +66,7 @@ impl Place {
     }
 
     /// A point of the world in the scene's coordinates.
+    #[inline(always)]
     pub(crate) fn scene_from_world(&self, point: DVec3) -> DVec3 {
         point - self.frame.origin
     }
@@ -87,11 +92,13 @@ pub(crate) struct Line {
 }
 
 /// The direction divided by the power of two below its largest component, and that power.
-#[inline]
+#[inline(always)]
 fn scaled(direction: DVec3, largest: f64) -> (DVec3, f64) {
     if (1e-300..1e300).contains(&largest) {
-        let power = f64::from_bits(largest.to_bits() & EXPONENT_BITS);
-        return (direction * power.recip(), power);
+        let power = largest.to_bits() & EXPONENT_BITS;
+        // The reciprocal of a power of two, without dividing.
+        let inverse = f64::from_bits(2 * ONE_BITS - power);
+        return (direction * inverse, f64::from_bits(power));
     }
     scaled_far(direction, largest)
 }
@@ -106,7 +113,7 @@ fn scaled_far(direction: DVec3, largest: f64) -> (DVec3, f64) {
 
 impl Line {
     /// `None` for a ray with a NaN, an infinity or no direction: it meets nothing.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn new(query: &RayQuery, place: &Place) -> Option<Self> {
         let Ray { origin, direction } = query.ray;
         let largest = direction.abs().max_element();
@@ -125,7 +132,12 @@ impl Line {
             ray,
             origin: -shift,
             end: query.t_max * scale - shift,
-            departure: query.departure,
+            // Field by field: as a whole, with its padding, it is written and read in unequal parts.
+            departure: Departure {
+                face: query.departure.face,
+                instance: query.departure.instance,
+                outward: query.departure.outward,
+            },
             shift,
             scale,
         })

@@ -120,6 +120,7 @@ impl Sheets {
         self.triangles.len()
     }
 
+    #[inline(always)]
     fn triangle(&self, face: FaceId) -> Option<u32> {
         let triangle = face.0.checked_sub(self.first_face)?;
         ((triangle as usize) < self.triangles.len()).then_some(triangle)
@@ -154,6 +155,7 @@ impl Sheets {
     }
 
     /// The search for the nearest triangle on a line, before `limit` or at it.
+    #[inline(always)]
     pub(crate) fn query(&self, line: &Line, limit: f64) -> TriangleQuery {
         TriangleQuery {
             ray: line.ray,

@@ -5,6 +5,7 @@
 
 use octray_geometry::FaceId;
 use octray_geometry::mesh::TriangleQuery;
+use octray_kernels::{Lanes, dispatch};
 use octray_math::Interval;
 
 use crate::line::Line;
@@ -14,7 +15,7 @@ use crate::solids::{Interface, Scratch};
 use crate::{Hit, RayQuery, World};
 
 /// Rays whose lines are in memory at a time.
-const PART: usize = 256;
+const PART: usize = 64;
 
 /// Working memory of slices that search triangles.
 #[derive(Debug, Default)]
@@ -27,21 +28,35 @@ pub(crate) struct TriangleSlice {
 }
 
 impl TriangleSlice {
-    /// The lines of some queries.
+    /// The lines of some queries, with the vector instructions of this machine: rounding to an integer is one
+    /// of them.
     fn fill(&mut self, world: &World, queries: &[RayQuery]) {
+        match world.sheets.triangles().lanes() {
+            Lanes::Scalar => self.fill_with(world, queries),
+            Lanes::Vector(level) => dispatch!(level, _simd => self.fill_with(world, queries)),
+        }
+    }
+
+    #[inline(always)]
+    fn fill_with(&mut self, world: &World, queries: &[RayQuery]) {
         self.lines.clear();
         self.queries.clear();
         for query in queries {
-            let line = world.line(query, false);
-            self.queries.push(line.map_or(
-                TriangleQuery {
-                    ray: query.ray,
-                    span: Interval::EMPTY,
-                    departed: None,
-                },
-                |line| world.sheets.query(&line, f64::INFINITY),
-            ));
-            self.lines.push(line);
+            // Each by itself: what is merged first is copied once more.
+            match world.line(query, false) {
+                Some(line) => {
+                    self.queries.push(world.sheets.query(&line, f64::INFINITY));
+                    self.lines.push(Some(line));
+                }
+                None => {
+                    self.queries.push(TriangleQuery {
+                        ray: query.ray,
+                        span: Interval::EMPTY,
+                        departed: None,
+                    });
+                    self.lines.push(None);
+                }
+            }
         }
     }
 }
@@ -62,6 +77,7 @@ impl World {
     ) {
         let mut slice = std::mem::take(&mut scratch.triangle_slice);
         let triangles = self.sheets.triangles();
+        scratch.triangles.begin_slice();
         let mut first = 0;
         for part in queries.chunks(PART) {
             slice.fill(self, part);
@@ -112,6 +128,7 @@ impl World {
     ) {
         let mut slice = std::mem::take(&mut scratch.triangle_slice);
         let triangles = self.sheets.triangles();
+        scratch.triangles.begin_slice();
         let mut first = 0;
         for part in queries.chunks(PART) {
             slice.fill(self, part);
@@ -126,8 +143,8 @@ impl World {
             triangles.any_of(
                 queries,
                 &mut scratch.triangles,
-                |index, triangle, hit| {
-                    let found = Interface::of_sheet(&self.sheets.crossing(triangle, hit));
+                |index, found| {
+                    let found = Interface::of_sheet(&self.sheets.hit(found));
                     lines[index].as_ref().is_some_and(|line| {
                         found.s < line.end && counts(found.face) && !self.starts_on(line, &found)
                     })

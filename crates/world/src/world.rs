@@ -361,14 +361,14 @@ impl World {
         }
         let mut best: Option<Interface> = None;
         self.solids
-            .sweep_forward(line, limit, scratch, counters, |change| {
+            .sweep_forward(line, limit, scratch, counters, |found| {
                 let is_nearer = |found: &Interface| {
                     let (s, face) = (found.s, found.face);
                     s < line.end
                         && s <= limit
                         && best.is_none_or(|b| s < b.s || (s == b.s && face < b.face))
                 };
-                if let Some(found) = change.interface().filter(is_nearer) {
+                if let Some(found) = found.filter(is_nearer) {
                     best = Some(found);
                 }
                 best.map_or(limit, |b| b.s)
@@ -397,8 +397,8 @@ impl World {
             return;
         }
         self.solids
-            .sweep_forward(line, limit, scratch, counters, |change| {
-                if let Some(found) = change.interface() {
+            .sweep_forward(line, limit, scratch, counters, |found| {
+                if let Some(found) = found {
                     limit = visit(&found);
                 }
                 limit
@@ -560,6 +560,7 @@ impl World {
 
     /// The query's line in the coordinates of the scene, `None` for a ray that meets nothing because
     /// it is none.
+    #[inline(always)]
     pub(crate) fn line(&self, query: &RayQuery, whole: bool) -> Option<Line> {
         let line = Line::new(query, &self.place)?;
         Some(if whole { line.whole() } else { line })

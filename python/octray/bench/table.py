@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from octray._table import aligned, number
 from octray.bench.programs import YARDSTICK
 from octray.bench.result import Status
-from octray.lab.table import number
 
 if TYPE_CHECKING:
     from octray.bench.result import Report, Series
@@ -64,23 +64,13 @@ def table(report: Report) -> str:
         for series in report.series
         if report.scenes[series.scene].empty != series.scene or series.status is not Status.DONE
     ]
-    rows = [row(report, series) for series in shown]
-    heads = [[name for name, _, _ in COLUMNS], [unit for _, unit, _ in COLUMNS]]
-    widths = [max(len(line[i]) for line in heads + rows) for i in range(len(COLUMNS))]
-
-    def line(texts: list[str]) -> str:
-        fields = [
-            text.ljust(width) if left else text.rjust(width)
-            for text, width, (_, _, left) in zip(texts, widths, COLUMNS, strict=True)
-        ]
-        return "  ".join(fields).rstrip()
-
-    lines = [line(heads[0]), line(heads[1])]
+    names, units, *texts = aligned(COLUMNS, [row(report, series) for series in shown])
+    lines = [names, units]
     before: Series | None = None
-    for series, texts in zip(shown, rows, strict=True):
+    for series, line in zip(shown, texts, strict=True):
         if before is not None and (before.scene, before.threads) != (series.scene, series.threads):
             lines.append("")
-        lines.append(line(texts))
+        lines.append(line)
         before = series
     return "\n".join([*lines, "", *_notes(report)])
 

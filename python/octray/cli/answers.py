@@ -14,17 +14,15 @@ import sys
 import tempfile
 import zipfile
 from pathlib import Path
-from typing import IO, TYPE_CHECKING, Any, TypeAlias
+from typing import IO, TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    import numpy as np
     import numpy.typing as npt
     from typing_extensions import Self
 
-#: Per ray how many intervals it has (``None``: one answer for each ray), and the answers by name.
-Columns: TypeAlias = "tuple[npt.NDArray[np.int64] | None, dict[str, npt.NDArray[Any]]]"
+    from octray._answers import Columns
 
 
 class Writer:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from octray.cli.exits import Exit, FailureError
-from octray.cli.options import progress_option, quiet_option
+from octray.cli.options import budget_option, progress_option, quiet_option, repeat_option
 from octray.cli.progress import Progress
 
 if TYPE_CHECKING:
@@ -57,14 +57,7 @@ def _list(ctx: click.Context, _param: click.Parameter, value: bool) -> None:
     metavar="N",
     help="Threads; repeat it for several numbers. By default one for each processor.",
 )
-@click.option(
-    "--repeat",
-    type=click.IntRange(min=1),
-    default=3,
-    show_default=True,
-    metavar="N",
-    help="Renderings by every program, taken in turns.",
-)
+@repeat_option
 @click.option(
     "--timeout",
     type=click.FloatRange(min=0, min_open=True),
@@ -73,12 +66,7 @@ def _list(ctx: click.Context, _param: click.Parameter, value: bool) -> None:
     metavar="S",
     help="Most seconds of one command.",
 )
-@click.option(
-    "--budget",
-    type=click.FloatRange(min=0, min_open=True),
-    metavar="S",
-    help="Most seconds of the whole run; what it cuts off is listed.",
-)
+@budget_option
 @click.option("--keep", metavar="DIR", help="Leave the scenes and the pictures in DIR.")
 @click.option("--json", "as_json", is_flag=True, help="Print one JSON object.")
 @progress_option

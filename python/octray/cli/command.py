@@ -19,6 +19,7 @@ COMMANDS = {
     "lab": "Compare the methods on a scene: time, memory, work per ray.",
     "bench": "Race the other ray tracers that are installed.",
     "query": "Answer where rays go: hits, intervals, counts, points inside.",
+    "cluster": "Start, join and end clusters of machines.",
     "info": "Print what is in a scene or mesh file.",
     "doctor": "Check this installation and render a tiny scene.",
 }

@@ -12,10 +12,12 @@ import click
 from octray.cli.exits import Exit, FailureError
 from octray.cli.messages import load
 from octray.cli.options import (
+    budget_option,
     parse_method,
     picture_options,
     progress_option,
     quiet_option,
+    repeat_option,
     scene_argument,
     threads_option,
     tree_options,
@@ -61,14 +63,7 @@ def _parse_plane(
     help="Run this method; repeat it for more. By default every choice occurs at least once.",
 )
 @click.option("--all", "everything", is_flag=True, help="Run every valid combination.")
-@click.option(
-    "--repeat",
-    type=click.IntRange(min=1),
-    default=3,
-    show_default=True,
-    metavar="N",
-    help="Renderings of every method, taken in turns.",
-)
+@repeat_option
 @click.option(
     "-o", "--output", metavar="DIR", help="Write a report with charts and pictures to DIR."
 )
@@ -95,12 +90,7 @@ def _parse_plane(
     metavar="S",
     help="Most seconds of one build or one rendering.",
 )
-@click.option(
-    "--budget",
-    type=click.FloatRange(min=0, min_open=True),
-    metavar="S",
-    help="Most seconds of the whole run; what it cuts off is listed.",
-)
+@budget_option
 @progress_option
 @quiet_option
 def command(scene: str, **options: Any) -> int:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
 from typing import TYPE_CHECKING
 
@@ -10,6 +11,7 @@ import click
 from octray.cli.exits import Exit, FailureError
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
     from typing import Any
 
     from octray import Diagnostic, Scene
@@ -68,3 +70,18 @@ def load(path: str, *, facets: bool, strict: bool, quiet: bool) -> Scene:
         reason = f"{path}: {_count(warnings, 'warning')}, and --strict allows none"
         raise RejectedSceneError(reason, warnings)
     return scene
+
+
+@contextlib.contextmanager
+def preparing(path: str) -> Iterator[None]:
+    """Turn what is wrong with a scene, once it is made ready for rays, into an end of the run."""
+    import octray
+
+    try:
+        yield
+    except octray.SceneError as error:
+        show(error.diagnostics, errors_only=True)
+        reason = f"{path}: {_count(error.diagnostics, 'error')}, no picture"
+        raise RejectedSceneError(reason, error.diagnostics) from error
+    except MemoryError as error:
+        raise FailureError(f"{path}: {error}") from error

@@ -55,6 +55,20 @@ progress_option = click.option(
     show_default=True,
     help="How progress is shown on standard error.",
 )
+repeat_option = click.option(
+    "--repeat",
+    type=click.IntRange(min=1),
+    default=3,
+    show_default=True,
+    metavar="N",
+    help="Renderings by each, taken in turns.",
+)
+budget_option = click.option(
+    "--budget",
+    type=click.FloatRange(min=0, min_open=True),
+    metavar="S",
+    help="Most seconds of the whole run; what it cuts off is listed.",
+)
 quiet_option = click.option("-q", "--quiet", is_flag=True, help="Only errors on standard error.")
 
 

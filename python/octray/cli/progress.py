@@ -53,6 +53,7 @@ class Progress:
         self._tenth = 0
         self._last = self._start
         self._drawn = False
+        self._detail = ""
         self._color = self._style == "bar" and not os.environ.get("NO_COLOR")
 
     def __enter__(self) -> Self:
@@ -72,6 +73,11 @@ class Progress:
             self._stream.write(f"\r\x1b[K{self._label} ...")
             self._stream.flush()
             self._drawn = True
+
+    def with_detail(self, fraction: float, detail: str) -> None:
+        """Show that ``fraction`` is done, and a few words more."""
+        self._detail = f", {detail}" if detail else ""
+        self(fraction)
 
     def __call__(self, fraction: float) -> None:
         """Show that ``fraction`` (0 to 1) is done."""
@@ -95,6 +101,7 @@ class Progress:
         if self._color:
             bar, empty = f"\x1b[36m{bar}\x1b[0m", f"\x1b[2m{empty}\x1b[0m"
         text = f"\r\x1b[K{self._label} {bar}{empty} {fraction:4.0%}{self._rest(fraction)}"
+        text += self._detail
         self._stream.write(text)
         self._stream.flush()
         self._drawn = True
@@ -105,5 +112,5 @@ class Progress:
         if tenth > self._tenth and (tenth == _ALL or now - self._last > _LINE_PAUSE):
             self._tenth = tenth
             self._last = now
-            self._stream.write(f"{self._label} {tenth * 10}%{self._rest(fraction)}\n")
+            self._stream.write(f"{self._label} {tenth * 10}%{self._rest(fraction)}{self._detail}\n")
             self._stream.flush()

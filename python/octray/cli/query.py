@@ -9,8 +9,9 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from octray.cli.answers import JsonLines, Npz, Writer
+from octray.cli.cluster_options import cluster_option, started
 from octray.cli.exits import Exit, FailureError
-from octray.cli.messages import load
+from octray.cli.messages import load, preparing
 from octray.cli.options import (
     accel_option,
     progress_option,
@@ -28,8 +29,8 @@ if TYPE_CHECKING:
     import numpy.typing as npt
 
     from octray import Scene
-    from octray.cli.answers import Columns
     from octray.cli.progress import Style
+    from octray.cluster import Cluster
 
     _Rows = npt.NDArray[np.float64]
 
@@ -71,6 +72,7 @@ MODES = ("first", "all", "count", "any", "inside")
     help="For all: whose intervals count where solids overlap; regions by default.",
 )
 @click.option("--normals", is_flag=True, help="For first and all: unit normals too.")
+@cluster_option
 @accel_option
 @tree_options
 @threads_option
@@ -100,6 +102,7 @@ class _Query:
         self.rows, self.what = self._open_rows()
         self.writer = self._open_writer()
         self.invalid = 0
+        self.cluster: Cluster | None = None
 
     def _check_arguments(self) -> None:
         from octray._core import check_request
@@ -156,22 +159,28 @@ class _Query:
         return Npz(path) if suffix == ".npz" else JsonLines(path)
 
     def run(self, scene: Scene) -> int:
-        """Answer for all rays; say what happened."""
-        import octray
+        """Answer for all rays, by workers if so asked."""
+        address = self.options["cluster"]
+        if address is None:
+            return self._run(scene)
+        with started(address, quiet=self.options["quiet"]) as self.cluster:
+            return self._run(scene)
 
+    def _run(self, scene: Scene) -> int:
+        """Say what happened, too."""
         start = time.perf_counter()
         style: Style = "none" if self.options["quiet"] else self.options["progress"]
         done = 0
         try:
-            scene.prepare(**self.method, **tree_values(self.options))
+            if self.cluster is None:
+                with preparing(self.path):
+                    scene.prepare(**self.method, **tree_values(self.options))
             with self.writer as writer, Progress("query", style) as progress:
                 for columns, rows in self._answers(scene):
                     writer.add(columns)
                     done += rows
                     progress(done / max(len(self.rows), 1))
                 writer.finish(self._labels(scene))
-        except octray.SceneError as error:
-            raise FailureError(f"{self.path}: {error}", Exit.SCENE) from error
         except BrokenPipeError:
             raise
         except OSError as error:
@@ -190,49 +199,31 @@ class _Query:
         """Columns of answers, and for how many rays they are, chunk by chunk."""
         import numpy as np
 
+        from octray._answers import columns
         from octray._chunks import row_chunks
 
-        answer = getattr(self, f"_{self.mode}")
+        options = {name: self.options[name] for name in ("whole_line", "overlaps", "normals")}
+        options |= self.method
         if len(self.rows) == 0:
             width = self.rows.shape[1]
-            yield answer(scene, np.empty((0, width))), 0
+            yield columns(scene, self.mode, np.empty((0, width)), options), 0
+        if self.cluster is not None and len(self.rows):
+            del options["threads"]
+            answers = self.cluster.query(
+                scene,
+                self.mode,
+                self.rows,
+                chunk=CHUNK,
+                trees=tree_values(self.options),
+                **options,
+            )
+            yield from answers
+            return
         for part in row_chunks(self.what, self.rows, self.rows.shape[1], CHUNK):
             rows = np.asarray(part, dtype=np.float64)
             if self.what == "rays":
                 self.invalid += scene._count_invalid_rays(rows, **self.method)  # noqa: SLF001
-            yield answer(scene, rows), len(rows)
-
-    def _first(self, scene: Scene, rays: _Rows) -> Columns:
-        hits = scene.cast_rays(rays, **self.method)
-        columns = {"t": hits.t, "object_id": hits.object_id, "face_id": hits.face_id}
-        if self.options["normals"]:
-            columns["normal"] = hits.normal
-        return None, columns
-
-    def _all(self, scene: Scene, rays: _Rows) -> Columns:
-        found = scene.list_intersections(
-            rays,
-            whole_line=self.options["whole_line"],
-            overlaps=self.options["overlaps"] or "regions",
-            **self.method,
-        )
-        names = ["t_enter", "t_exit", "object_id", "material_id", "face_enter", "face_exit"]
-        if self.options["normals"]:
-            names += ["normal_enter", "normal_exit"]
-        return found.counts, {name: getattr(found, name) for name in names}
-
-    def _count(self, scene: Scene, rays: _Rows) -> Columns:
-        whole_line = self.options["whole_line"]
-        return None, {
-            "count": scene.count_intersections(rays, whole_line=whole_line, **self.method)
-        }
-
-    def _any(self, scene: Scene, rays: _Rows) -> Columns:
-        return None, {"any": scene.test_occlusions(rays, **self.method)}
-
-    def _inside(self, scene: Scene, rows: _Rows) -> Columns:
-        objects = scene.locate(rows[:, :3], **self.method)
-        return None, {"inside": objects >= 0, "object_id": objects}
+            yield columns(scene, self.mode, rows, options), len(rows)
 
     def _labels(self, scene: Scene) -> dict[str, list[str]]:
         """Names for the ids that the answers hold."""

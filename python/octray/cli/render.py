@@ -7,8 +7,9 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from octray.cli.cluster_options import cluster_option, started
 from octray.cli.exits import Exit, FailureError
-from octray.cli.messages import RejectedSceneError, load
+from octray.cli.messages import RejectedSceneError, load, preparing
 from octray.cli.options import (
     accel_option,
     picture_options,
@@ -24,8 +25,11 @@ from octray.cli.progress import Progress, duration
 from octray.cli.report import Report
 
 if TYPE_CHECKING:
+    from pathlib import Path
+
     from octray import Image, Scene
     from octray.cli.progress import Style
+    from octray.cluster import Accounts
 
 
 @click.command("render", epilog="Example: octray render part.stl -o part.png --size 1920x1080")
@@ -34,6 +38,11 @@ if TYPE_CHECKING:
     "-o", "--output", metavar="FILE", help="Picture, .png or .exr; - is standard output (PNG)."
 )
 @picture_options
+@click.option(
+    "--view-from",
+    type=click.Choice(["front", "back", "left", "right", "top", "bottom", "iso"]),
+    help="Show everything from this side, in a parallel projection.",
+)
 @accel_option
 @tree_options
 @click.option(
@@ -61,6 +70,19 @@ if TYPE_CHECKING:
 @click.option(
     "--preview", is_flag=True, help="Write a coarse picture at once, then ever finer ones."
 )
+@click.option(
+    "--resume",
+    is_flag=True,
+    help="Go on where an interrupted rendering of the same picture stopped: with FILE.ckpt.",
+)
+@cluster_option
+@click.option(
+    "--distribution",
+    type=click.Choice(["image", "object"]),
+    default="image",
+    show_default=True,
+    help="With --cluster: every worker has the whole scene, or a part of it.",
+)
 @click.option("--json", "as_json", is_flag=True, help="Print one report object.")
 @progress_option
 @quiet_option
@@ -85,8 +107,18 @@ class _Run:
             raise click.UsageError("-o - and --json both want standard output")
         if options["output"] == "-" and options["preview"]:
             raise click.UsageError("--preview writes the picture several times: -o cannot be -")
+        if options["resume"] and (options["output"] == "-" or options["integrator"] == "cost"):
+            raise click.UsageError("--resume needs a picture of light in a file")
+        if options["cluster"]:
+            for name in ("preview", "dump_cells", "load_cells", "threads"):
+                if options[name]:
+                    flag = "--" + name.replace("_", "-")
+                    raise click.UsageError(f"{flag} does not go with --cluster")
+        elif options["distribution"] != "image":
+            raise click.UsageError("--distribution needs --cluster")
         self.report = Report(path, options)
         self.output: Output | None = None
+        self.accounts: Accounts | None = None
         self.style: Style = "none" if options["quiet"] else options["progress"]
 
     def run(self) -> int:
@@ -132,12 +164,19 @@ class _Run:
         options = self.options
         output = self.output = Output(options["output"], self.path)
         scene = self._load()
+        if options["cluster"]:
+            return self._on_cluster(scene, output)
         with self._phase("build"):
             self._prepare(scene)
         image = self._trace(scene, output)
         self.report.add_rendering(image.report)
+        self._warn_of_checkpoint(image)
         if not image.complete:
             return self._keep_partial(image, output)
+        return self._finish(image, output)
+
+    def _finish(self, image: Image, output: Output) -> Exit:
+        options = self.options
         start = time.perf_counter()
         output.write(image, options["view"])
         self.report.phases["write_s"] = time.perf_counter() - start
@@ -147,14 +186,66 @@ class _Run:
             if image.report["cost"] is not None:
                 self._say(f"  {self._scale(image)}")
         if options["verbose"]:
-            self._say(self.report.details())
+            self._say(self.accounts.table() if self.accounts is not None else self.report.details())
         return Exit.OK
+
+    def _checkpoint(self, output: Output) -> Path | None:
+        """Give the file beside the picture that keeps what is finished."""
+        if output.to_stdout or self.options["integrator"] == "cost":
+            return None
+        path = output.path.with_name(output.path.name + ".ckpt")
+        if self.options["resume"] and not path.exists() and not self.options["quiet"]:
+            self._say(f"octray: there is no {path}: starting afresh")
+        return path
+
+    def _warn_of_checkpoint(self, image: Image) -> None:
+        error = image.report["checkpoint"].get("error")
+        if error:
+            self._say(f"octray: warning: {image.report['checkpoint']['path']}: {error}")
+
+    def _on_cluster(self, scene: Scene, output: Output) -> Exit:
+        """Render by workers; what is the same for all pictures is in ``_finish``."""
+        options = self.options
+        names = ("size", "spp", "crop", "view", "max_depth", "threshold", "integrator")
+        checkpoint = self._checkpoint(output)
+        with (
+            started(options["cluster"], quiet=options["quiet"]) as cluster,
+            Progress("render", self.style) as progress,
+        ):
+            self.accounts = cluster.accounts
+            try:
+                image = cluster.render(
+                    scene,
+                    distribution=options["distribution"],
+                    accel=options["accel"],
+                    trees=tree_values(options),
+                    progress=progress.with_detail,
+                    checkpoint=checkpoint,
+                    resume=options["resume"],
+                    on_interrupt="return",
+                    **{name: options[name] for name in names},
+                )
+            except ValueError as error:
+                raise click.UsageError(str(error)) from error
+            except OSError as error:
+                raise FailureError(f"{error.filename}: {error.strerror or error}") from error
+        self.report.add_rendering(image.report)
+        if not image.complete:
+            self._say(
+                f"octray: interrupted; {checkpoint or output.name} has what was finished,"
+                " go on with --resume"
+                if checkpoint is not None and checkpoint.exists()
+                else f"octray: interrupted; {self._what_is_there()}"
+            )
+            return Exit.INTERRUPTED
+        return self._finish(image, output)
 
     def _prepare(self, scene: Scene) -> None:
         options = self.options
         how: dict[str, Any] = {"accel": options["accel"], "threads": options["threads"]}
         try:
-            scene.prepare(cells=options["load_cells"], **how, **tree_values(options))
+            with preparing(self.path):
+                scene.prepare(cells=options["load_cells"], **how, **tree_values(options))
             if options["dump_cells"]:
                 scene.dump_cells(options["dump_cells"], **how)
         except ValueError as error:
@@ -171,9 +262,12 @@ class _Run:
                 quiet=self.options["quiet"],
             )
         self.report.add_messages(scene.diagnostics)
-        if self.options["viewall"]:
+        if self.options["viewall"] or self.options["view_from"]:
             try:
-                scene.view_all()
+                if self.options["view_from"]:
+                    scene.view_from(self.options["view_from"])
+                else:
+                    scene.view_all()
             except ValueError as error:
                 raise FailureError(f"{self.path}: {error}", Exit.SCENE) from error
         return scene
@@ -198,6 +292,8 @@ class _Run:
                     if options["preview"]
                     else None,
                     on_interrupt="return",
+                    checkpoint=self._checkpoint(output),
+                    resume=options["resume"],
                 )
             except ValueError as error:
                 raise click.UsageError(str(error)) from error
@@ -209,7 +305,10 @@ class _Run:
         output.write(image, self.options["view"])
         self.report.add_output(output, image)
         share = image.report["finished_pixels"] / (image.width * image.height)
-        self._say(f"octray: interrupted; {output.name} has the {share:.0%} that were finished")
+        text = f"octray: interrupted; {output.name} has the {share:.0%} that were finished"
+        if image.report["checkpoint"].get("exists"):
+            text += "; --resume goes on from there"
+        self._say(text)
         return Exit.INTERRUPTED
 
     def _what_is_there(self) -> str:
@@ -222,6 +321,14 @@ class _Run:
 
     def _summary(self, output: Output, image: Image) -> str:
         phases = self.report.phases
+        if self.accounts is not None:
+            start = self.accounts.start_s
+            return (
+                f"{output.name}: {image.width}x{image.height} on"
+                f" {len(self.accounts.workers)} workers in {duration(sum(phases.values()) + start)}"
+                f" (import {duration(phases['import_s'])}, start {duration(start)},"
+                f" render {duration(phases['render_s'])})"
+            )
         rays = image.report["rays"]["total"]
         rate = rays / max(phases["render_s"], 1e-9)
         mega = 1e6

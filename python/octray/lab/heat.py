@@ -9,8 +9,8 @@ from matplotlib.cm import ScalarMappable
 from matplotlib.colors import LogNorm
 from matplotlib.ticker import FuncFormatter
 
+from octray._table import number
 from octray.lab.figure import drawn, to_png
-from octray.lab.table import number
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

@@ -7,10 +7,11 @@ from importlib import resources
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from octray._table import ABSENT, number
 from octray.lab import figures, sections
 from octray.lab.result import Status
 from octray.lab.selection import YARDSTICK
-from octray.lab.table import ABSENT, COLUMNS, number, row
+from octray.lab.table import COLUMNS, row
 
 if TYPE_CHECKING:
     import os

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from octray._table import ABSENT, aligned, number
 from octray.lab import figures
 from octray.lab.result import Status
 
@@ -11,20 +12,6 @@ if TYPE_CHECKING:
     from octray.lab.result import Combination, Report
 
 _MIB = 1 << 20
-#: What is not known is not 0.
-ABSENT = "-"
-
-
-def number(value: float | None, digits: int = 3) -> str:
-    """Write a number with so many significant digits, without an exponent."""
-    if value is None:
-        return ABSENT
-    if value == 0:
-        return "0"
-    if abs(value) >= 10**digits:
-        return f"{value:.0f}"
-    text = f"{value:.{digits}g}"
-    return f"{value:.6f}" if "e" in text else text
 
 
 def count(value: int | None) -> str:
@@ -87,18 +74,7 @@ def row(combination: Combination) -> list[str]:
 
 def table(report: Report) -> str:
     """Give the table, and below it what a reader has to know besides."""
-    rows = [row(combination) for combination in report.combinations]
-    heads = [[name for name, _, _ in COLUMNS], [unit for _, unit, _ in COLUMNS]]
-    widths = [max(len(line[i]) for line in heads + rows) for i in range(len(COLUMNS))]
-
-    def line(texts: list[str]) -> str:
-        fields = [
-            text.ljust(width) if left else text.rjust(width)
-            for text, width, (_, _, left) in zip(texts, widths, COLUMNS, strict=True)
-        ]
-        return "  ".join(fields).rstrip()
-
-    lines = [line(heads[0]), line(heads[1]), *map(line, rows)]
+    lines = aligned(COLUMNS, map(row, report.combinations))
     if report.reference is not None:
         lines += ["", f"Pictures are compared with that of {report.reference}."]
     if report.cut_off:

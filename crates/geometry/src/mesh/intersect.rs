@@ -17,8 +17,13 @@
 //! from the back: the line enters it exactly as often as it leaves it. A triangle without area in
 //! the plane is never hit, because its three edge functions add up to zero.
 //!
+//! For eight lines at a time a kernel does the same ([`octray_kernels::crossings`]). An edge function
+//! that is small beside its products is evaluated again without cancellation, so that its relative
+//! error, and with it the weights', stays below 2^-45.
+//!
 //! Equal positions behave as one vertex whatever their indices.
 
+use octray_kernels::crossings::{CANCELLED, SAFE_AREA};
 use octray_math::{DVec3, Ray};
 
 use super::TriangleMesh;
@@ -62,12 +67,6 @@ struct Edge {
     minus: f64,
 }
 
-/// Below this share of its products an edge function is evaluated again without cancellation, so
-/// that its relative error, and with it the weights', stays below 2^-45.
-const CANCELLED: f64 = 1.0 / 128.0;
-/// Twice the area in the plane between these bounds suffers no harm from under- or overflow.
-const SAFE_AREA: std::ops::Range<f64> = 1e-280..1e280;
-
 impl TriangleRay {
     /// Prepares the line through `ray`; only the parameters know where it starts.
     ///
@@ -75,7 +74,20 @@ impl TriangleRay {
     #[must_use]
     pub fn new(ray: &Ray) -> Self {
         let d = ray.direction;
-        let size = d.abs();
+        let [x, y, z] = Self::axes(d);
+        Self {
+            origin: ray.origin,
+            axes: [x, y, z],
+            shear: [d[x] / d[z], d[y] / d[z]],
+            depth_per_t: d[z],
+        }
+    }
+
+    /// Two axes across a direction, and the one along which it is longest.
+    #[inline(always)]
+    #[must_use]
+    pub fn axes(direction: DVec3) -> [usize; 3] {
+        let size = direction.abs();
         let z = if size.x >= size.y && size.x >= size.z {
             0
         } else if size.y >= size.z {
@@ -83,16 +95,12 @@ impl TriangleRay {
         } else {
             2
         };
-        let (mut x, mut y) = ((z + 1) % 3, (z + 2) % 3);
-        if d[z] < 0.0 {
-            // Keeps the sense of rotation as the ray sees it.
-            (x, y) = (y, x);
-        }
-        Self {
-            origin: ray.origin,
-            axes: [x, y, z],
-            shear: [d[x] / d[z], d[y] / d[z]],
-            depth_per_t: d[z],
+        let (x, y) = ((z + 1) % 3, (z + 2) % 3);
+        // Keeps the sense of rotation as the ray sees it.
+        if direction[z] < 0.0 {
+            [y, x, z]
+        } else {
+            [x, y, z]
         }
     }
 

@@ -54,6 +54,15 @@ impl Curve {
         }
     }
 
+    /// The curve with these [`Curve::weighted_points`], two to four.
+    ///
+    /// `None` where a weight is not positive, or one of the outer ones not 1.
+    pub(crate) fn from_weighted(all: &[DVec3]) -> Option<Self> {
+        let outer = [all.first()?, all.last()?];
+        let has_weight = all.iter().all(|p| p.z > 0.0 && p.is_finite());
+        (has_weight && outer.iter().all(|p| p.z == 1.0)).then(|| Self::weighted(all))
+    }
+
     /// The control points, times their weights, and the weights.
     #[must_use]
     pub fn weighted_points(&self) -> &[DVec3] {

@@ -114,6 +114,37 @@ impl Region {
         Self::of_pieces(pieces)
     }
 
+    /// What its outlines have been cut into.
+    pub(crate) fn pieces(&self) -> &[Piece] {
+        &self.pieces
+    }
+
+    /// The region whose outlines are made of these pieces, in any order.
+    ///
+    /// # Errors
+    /// Like [`Region::new`]; the outlines are not closed.
+    pub(crate) fn from_pieces(pieces: Vec<Piece>) -> Result<Self, ShapeError> {
+        let control = |piece: &Piece| piece.curve().control().all(DVec2::is_finite);
+        if !pieces.iter().all(control) {
+            let message = "has a coordinate that is not finite";
+            return Err(ShapeError::BadProfile(message));
+        }
+        // Every start is an end.
+        let sorted = |end: fn(&Piece) -> DVec2| {
+            let mut all: Vec<[f64; 2]> = pieces
+                .iter()
+                // Adding 0 makes -0 the same as 0.
+                .map(|p| (end(p) + DVec2::ZERO).to_array())
+                .collect();
+            all.sort_by(|a, b| a[0].total_cmp(&b[0]).then(a[1].total_cmp(&b[1])));
+            all
+        };
+        if sorted(Piece::start) != sorted(Piece::end) {
+            return Err(ShapeError::BadProfile("has an outline that is not closed"));
+        }
+        Self::of_pieces(pieces)
+    }
+
     fn of_pieces(pieces: Vec<Piece>) -> Result<Self, ShapeError> {
         let Some(first) = pieces.first() else {
             return Err(ShapeError::BadProfile("has no area"));

@@ -5,6 +5,7 @@
 //! that share a surface share every bit of its crossings.
 
 mod cone;
+mod convex;
 mod extrusion;
 mod fingerprint;
 mod found;
@@ -28,6 +29,7 @@ use octray_math::{Aabb, DAffine3, DVec3, Ray};
 
 use crate::Polynomial;
 use crate::profile::Contour;
+pub use convex::Stretch;
 use local_box::LocalBox;
 pub use near::{NEAR, NearPair};
 pub(crate) use polynomial::range as polynomial_range;

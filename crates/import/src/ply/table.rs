@@ -140,6 +140,8 @@ impl Reader<'_> {
         );
         let color = color_columns(element);
         let (mut normals, mut texcoords, mut colors) = (Vec::new(), Vec::new(), Vec::new());
+        self.budget
+            .reserve(&mut self.tables.positions, element.count);
         self.each_row(element, |reader, row| {
             reader.budget.take(BYTES_PER_VERTEX);
             let p = DVec3::new(row.number(x), row.number(y), row.number(z));
@@ -185,6 +187,9 @@ impl Reader<'_> {
             return None;
         };
         let color = color_columns(element);
+        if !strips {
+            self.budget.reserve(&mut self.faces.faces, element.count);
+        }
         self.each_row(element, |reader, row| {
             let corners = row.list(column);
             let color = color.map(|columns| columns.color(row));

@@ -2,17 +2,19 @@
 
 use super::{BeamFrame, BeamTriangles, Group, U};
 use crate::lane::Lane;
+use crate::triangles::WINDOW;
 
 /// Fills the lanes of prepared triangles from one on.
 #[inline(always)]
 pub(super) fn prepare<L: Lane>(
     token: L::Token,
     beam: &BeamFrame,
-    rows: &[f32],
+    rows: &[f32; WINDOW],
     count: usize,
     lane: usize,
     out: &mut BeamTriangles,
 ) {
+    let count = count.min(8);
     let mut c = [[L::all(token, 0.0); 3]; 3];
     let mut v = c;
     for corner in 0..3 {

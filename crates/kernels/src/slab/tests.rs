@@ -31,7 +31,7 @@ fn both(ray: &SlabRay, boxes: &Boxes8, s_min: f32, s_max: f32) -> (u32, [f32; 8]
 #[test]
 fn empty_slots_are_never_hit() {
     for d in [[1.0, 0.0, 0.0], [-1.0, -0.0, 0.5], [0.3, -1.5, 1e-30]] {
-        let ray = SlabRay::new([0.25, 0.5, -0.125], d, SLACK);
+        let ray = SlabRay::new([0.25, 0.5, -0.125], d, 1.0, SLACK);
         let span = (f32::NEG_INFINITY, f32::INFINITY);
         assert_eq!(both(&ray, &Boxes8::EMPTY, span.0, span.1).0, 0);
     }
@@ -46,7 +46,7 @@ fn parallel_lines_see_the_planes_they_lie_in_and_not_those_beyond() {
     boxes.set(3, [0.5001, -1.0, -1.0], [1.0, 1.0, 1.0]);
     boxes.set(4, [0.0, -1.0, -1.0], [0.4999, 1.0, 1.0]);
     for zero in [0.0, -0.0] {
-        let ray = SlabRay::new([0.5, -0.5, -0.5], [zero, 1.0, zero], SLACK);
+        let ray = SlabRay::new([0.5, -0.5, -0.5], [zero, 1.0, zero], 1.0, SLACK);
         let (mask, entries) = both(&ray, &boxes, -8.0, 8.0);
         assert_eq!(mask, 0b111);
         assert!((entries[1] - 0.75).abs() < 1e-6 && entries[1] <= 0.75);
@@ -97,7 +97,7 @@ proptest! {
         });
         // In f64 the origin misses the point by less than the slack.
         let origin = [0, 1, 2].map(|i| point[i] - s * d[i]);
-        let ray = SlabRay::new(origin, d, SLACK);
+        let ray = SlabRay::new(origin, d, 1.0, SLACK);
         let (mask, entries) = both(&ray, &boxes, round_down(s), round_up(s));
         prop_assert_eq!(mask, 1 << 5);
         prop_assert!(f64::from(entries[5]) <= s);
@@ -117,7 +117,7 @@ proptest! {
         let min = [0, 1, 2].map(|i| a[i].min(b[i]));
         let max = [0, 1, 2].map(|i| a[i].max(b[i]));
         boxes.set(0, min, max);
-        let ray = SlabRay::new(o, d, SLACK);
+        let ray = SlabRay::new(o, d, 1.0, SLACK);
         let (mask, entries) = both(&ray, &boxes, -1e3, 1e3);
         let plane = |p: [f32; 3], i: usize| (f64::from(p[i]) - o[i]) / d[i];
         let enter = (0..3).map(|i| plane(min, i)).fold(f64::MIN, f64::max);

@@ -1,7 +1,9 @@
 //! Light to display values.
 
+use std::sync::LazyLock;
+
 use octray_math::DVec3;
-use octray_scene::{View, linear_to_srgb};
+use octray_scene::{View, linear_to_srgb, srgb_to_linear};
 
 use super::{Image, neutral};
 
@@ -16,7 +18,11 @@ pub fn develop(image: &Image, view: View) -> Vec<u8> {
         .iter()
         .flat_map(|pixel| {
             let light = DVec3::from_array(pixel.map(f64::from));
-            develop_color(light, view).to_array().map(to_byte)
+            match view {
+                View::Raw => light.to_array().map(to_byte),
+                View::Standard => light.to_array().map(srgb_byte),
+                View::Neutral => neutral(light.max(DVec3::ZERO)).to_array().map(srgb_byte),
+            }
         })
         .collect()
 }
@@ -35,6 +41,33 @@ pub fn develop_color(light: DVec3, view: View) -> DVec3 {
 fn to_byte(value: f64) -> u8 {
     (value.clamp(0.0, 1.0) * 255.0 + 0.5) as u8
 }
+
+/// `to_byte(linear_to_srgb(light))`, without a power for each channel of each pixel.
+fn srgb_byte(light: f64) -> u8 {
+    // NaN has reached no step.
+    SRGB_STEPS.partition_point(|step| *step <= light) as u8
+}
+
+/// The least light that has byte `b + 1`, for each `b`.
+static SRGB_STEPS: LazyLock<[f64; 255]> = LazyLock::new(|| {
+    std::array::from_fn(|below| {
+        let reaches = |light| usize::from(to_byte(linear_to_srgb(light))) > below;
+        let about = srgb_to_linear((below as f64 + 0.5) / 255.0);
+        // The inverse is right to a few rounding errors; the step is found by halving what they leave.
+        let (mut under, mut over) = (about * (1.0 - 1e-12), about * (1.0 + 1e-12));
+        loop {
+            let middle = under + 0.5 * (over - under);
+            if middle <= under || middle >= over {
+                return over;
+            }
+            if reaches(middle) {
+                over = middle;
+            } else {
+                under = middle;
+            }
+        }
+    })
+});
 
 #[cfg(test)]
 mod tests {
@@ -56,6 +89,24 @@ mod tests {
         assert_eq!(developed(rgb, View::Standard), [188, 255, 0]);
         assert_eq!(developed([f64::NAN; 3], View::Standard), [0, 0, 0]);
         assert_eq!(developed([f64::INFINITY; 3], View::Raw), [255, 255, 255]);
+    }
+
+    #[test]
+    fn the_steps_are_where_the_curve_changes_its_byte() {
+        for (below, step) in SRGB_STEPS.iter().enumerate() {
+            assert_eq!(usize::from(to_byte(linear_to_srgb(*step))), below + 1);
+            assert_eq!(
+                usize::from(to_byte(linear_to_srgb(step.next_down()))),
+                below
+            );
+        }
+        for i in 0..=100_000 {
+            let light = f64::from(i) / 90_000.0;
+            assert_eq!(srgb_byte(light), to_byte(linear_to_srgb(light)), "{light}");
+        }
+        for light in [-1.0, -0.0, f64::INFINITY, f64::NEG_INFINITY, f64::NAN] {
+            assert_eq!(srgb_byte(light), to_byte(linear_to_srgb(light)), "{light}");
+        }
     }
 
     #[test]

@@ -1,5 +1,6 @@
 //! Pictures of scenes whose light is known by formula.
 
+mod checkpoints;
 mod costs;
 mod determinism;
 mod energy;

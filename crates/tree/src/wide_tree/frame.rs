@@ -17,6 +17,8 @@ pub(super) struct Frame {
     center: DVec3,
     exponent: i32,
     scale: f64,
+    /// The largest coordinate of boxes.
+    extent: f64,
 }
 
 /// A box in the frame's coordinates, rounded outwards.
@@ -26,7 +28,7 @@ pub(super) struct LocalBox {
     pub(super) max: [f32; 3],
 }
 
-/// A line in the tree's coordinates, its origin at the closest approach to the centre.
+/// A line in the tree's coordinates, its origin at the closest approach to the centre or near it.
 #[derive(Clone, Copy, Debug)]
 pub struct LocalLine {
     pub(super) slab: SlabRay,
@@ -42,6 +44,8 @@ pub struct LocalLine {
 
 /// Farther than this from the centre no line meets the tree: boxes lie within 16.
 const REACH: f64 = 64.0;
+/// A line whose origin is as near as this is not moved.
+const NEAR: f64 = 2.0;
 
 impl Frame {
     pub(super) fn new(bounds: &Aabb) -> Self {
@@ -51,11 +55,16 @@ impl Frame {
         } else {
             0
         };
-        Self {
+        let mut frame = Self {
             center: bounds.center(),
             exponent,
             scale: libm::ldexp(1.0, exponent),
-        }
+            extent: 0.0,
+        };
+        let corners = [bounds.min, bounds.max].map(|p| frame.point(p).abs().max_element());
+        // More than boxes are rounded outwards by.
+        frame.extent = corners[0].max(corners[1]) * (1.0 + 1.0 / f64::from(1 << 20));
+        frame
     }
 
     pub(super) const fn center(&self) -> DVec3 {
@@ -66,6 +75,7 @@ impl Frame {
         self.scale
     }
 
+    #[inline(always)]
     pub(super) fn point(&self, p: DVec3) -> DVec3 {
         (p - self.center) * self.scale
     }
@@ -78,7 +88,7 @@ impl Frame {
     }
 
     /// `None` for a ray that cannot meet the tree, or is none (not finite, or without direction).
-    #[inline]
+    #[inline(always)]
     pub(super) fn ray(&self, ray: &Ray) -> Option<LocalLine> {
         let longest = ray.direction.abs().max_element();
         if !(ray.origin.is_finite() && ray.direction.is_finite() && longest > 0.0) {
@@ -87,11 +97,12 @@ impl Frame {
         let power = binary_exponent(longest);
         let direction = scaled(ray.direction, -power);
         let origin = self.point(ray.origin);
-        let slack = (origin.abs().max_element() + 16.0) * (1.0 / (1u64 << 41) as f64);
+        let distance = origin.abs().max_element();
+        let slack = (distance + 16.0) * (1.0 / (1u64 << 41) as f64);
         let rate = self.exponent + power;
         if !(slack < 16.0 && rate.abs() < 1000) {
             return Some(LocalLine {
-                slab: SlabRay::new([0.0; 3], [1.0; 3], (1u64 << 60) as f64),
+                slab: SlabRay::new([0.0; 3], [1.0; 3], self.extent, (1u64 << 60) as f64),
                 origin: DVec3::ZERO,
                 direction: DVec3::ONE,
                 slack,
@@ -100,13 +111,17 @@ impl Frame {
                 blind: true,
             });
         }
-        let shift = -origin.dot(direction) / direction.length_squared();
-        let nearest = origin + direction * shift;
-        if nearest.abs().max_element() > REACH {
-            return None;
+        let (mut shift, mut nearest) = (0.0, origin);
+        // Lines of a world begin there.
+        if distance > NEAR {
+            shift = -origin.dot(direction) / direction.length_squared();
+            nearest = origin + direction * shift;
+            if nearest.abs().max_element() > REACH {
+                return None;
+            }
         }
         Some(LocalLine {
-            slab: SlabRay::new(nearest.to_array(), direction.to_array(), slack),
+            slab: SlabRay::new(nearest.to_array(), direction.to_array(), self.extent, slack),
             origin: nearest,
             direction,
             slack,
@@ -117,13 +132,16 @@ impl Frame {
     }
 }
 
+/// The least number in `f32`, about.
+const TINY: f64 = 1.0 / (1u128 << 127) as f64 / (1u64 << 22) as f64;
+
 impl LocalLine {
     /// For tests of triangles whose corners are [`super::WideTree::local`] ones; `None` where numbers
     /// are so extreme that every triangle must be looked at.
     ///
     /// Covered is an exact test that rounds as little as [`super::WideTree`] asks of visitors.
     #[must_use]
-    #[inline]
+    #[inline(always)]
     pub fn triangle_line(&self) -> Option<TriangleLine> {
         let (origin, direction) = (self.origin.to_array(), self.direction.to_array());
         (!self.blind).then(|| TriangleLine::new(origin, direction, self.slack))
@@ -131,19 +149,19 @@ impl LocalLine {
 
     /// A local parameter not above the one at `t`.
     #[must_use]
-    #[inline]
+    #[inline(always)]
     pub fn lower(&self, t: f64) -> f32 {
         -self.rounded_up(-t, -self.shift, f32::INFINITY)
     }
 
     /// A local parameter not below the one at `t`.
     #[must_use]
-    #[inline]
+    #[inline(always)]
     pub fn upper(&self, t: f64) -> f32 {
         self.rounded_up(t, self.shift, f32::INFINITY)
     }
 
-    #[inline]
+    #[inline(always)]
     fn rounded_up(&self, t: f64, shift: f64, unknown: f32) -> f32 {
         if self.blind {
             return unknown;
@@ -153,12 +171,14 @@ impl LocalLine {
         }
         let s = t * self.rate;
         let error = (s.abs() + shift.abs()) * (1.0 / (1u64 << 50) as f64);
-        round_up((s - shift) + error)
+        let above = (s - shift) + error;
+        // Rounding to the nearest takes away less, and less than the last term of the smallest.
+        (above + (above.abs() * f64::from(f32::EPSILON) + TINY)) as f32
     }
 }
 
 /// `floor(log2 x)` for finite `x > 0`.
-#[inline]
+#[inline(always)]
 fn binary_exponent(x: f64) -> i32 {
     let field = (x.to_bits() >> 52) as i32;
     if field == 0 {
@@ -169,12 +189,12 @@ fn binary_exponent(x: f64) -> i32 {
 }
 
 /// `2^n` for `|n| <= 1022`.
-#[inline]
+#[inline(always)]
 fn power_of_two(n: i32) -> f64 {
     f64::from_bits(((n + 1023) as u64) << 52)
 }
 
-#[inline]
+#[inline(always)]
 fn scaled(v: DVec3, n: i32) -> DVec3 {
     if n.abs() <= 1022 {
         v * power_of_two(n)

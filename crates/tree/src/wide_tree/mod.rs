@@ -104,7 +104,7 @@ pub enum WideTreeError {
     TooMany(usize),
     /// Known before the memory is taken.
     #[error(
-        "a tree over {items} items takes at least {needed} bytes, more than the limit of {limit}"
+        "a tree over {items} items takes at least {needed} bytes of memory, more than the limit of {limit}"
     )]
     Memory {
         /// How many items.

@@ -169,7 +169,7 @@ impl WideTree {
 
     /// The line in the tree's coordinates; `None` for one that does not meet the tree.
     #[must_use]
-    #[inline]
+    #[inline(always)]
     pub fn line(&self, ray: &Ray) -> Option<LocalLine> {
         if self.nodes.is_empty() {
             return None;
@@ -221,7 +221,18 @@ impl WideTree {
                         entry: entries[first],
                         link: part,
                     };
+                    let second = mask.trailing_zeros() as usize & 7;
+                    mask &= mask - 1;
+                    let mut other = Pending {
+                        entry: entries[second],
+                        link: node.links[second],
+                    };
+                    if other.entry < nearest.entry {
+                        std::mem::swap(&mut other, &mut nearest);
+                    }
+                    stack[height] = other;
                     let bottom = height;
+                    height += 1;
                     while mask != 0 {
                         let lane = mask.trailing_zeros() as usize & 7;
                         mask &= mask - 1;

@@ -3,6 +3,7 @@
 mod candidates;
 mod cells;
 mod divide;
+mod flat_object;
 mod interact;
 mod leaf;
 mod listed_cells;

@@ -1,26 +1,29 @@
 //! Small solids in a tree of tight boxes: a ray meets each alone.
 //!
-//! Where every object has a few faces only, cells have nothing to reduce: what costs is to find the
-//! objects near a line. A [`WideTree`] over their boxes does that. Two questions are asked of it.
-//! *What changes next?* Every object is swept by itself, the nearest boxes first. *What happens
-//! there?* The objects whose boxes hold that point are swept together, as brute force sweeps all of
-//! them: the others are false there, so that regions, priorities and coincident faces come out the
-//! same to the bit.
+//! Where every object has a few faces only, or is a convex hull less convex holes
+//! ([`super::flat_object`]), cells have little to reduce: what costs is to find the objects near a
+//! line. A [`WideTree`] over their boxes does that. Two questions are asked of it. *What changes
+//! next?* Every object is asked by itself, the nearest boxes first. *What happens there?* If one
+//! flat object is all there is, it has said so. Else the objects that are not known to be elsewhere
+//! are swept together, as brute force sweeps all of them: the others are false there, so that
+//! regions, priorities and coincident faces come out the same to the bit.
 
 use octray_geometry::csg::{self, Face};
+use octray_geometry::surface::Surface;
 use octray_math::{Aabb, Interval};
 use octray_tree::{WalkCost, WideTree, WideTreeConfig, WideTreeError};
 
 use super::cells::{Active, Content};
+use super::flat_object::{Ahead, Course, FirstChange, FlatObjects, Met};
 use super::leaf::{LeafObject, LeafView};
-use super::sweep::Change;
+use super::sweep::Interface;
 use super::volumes::{LeafHits, grown};
 use super::{LeafVisit, Scratch, Solids};
-use crate::Counters;
 use crate::line::Line;
+use crate::{Counters, Region};
 
-/// The most faces of an object that is small: balls, tubes, cones and rings. Of more, cells leave out
-/// those that do not matter, which pays.
+/// The most faces of an object that is small, unless it is flat: balls, tubes, cones and rings. Of
+/// more, cells leave out those that do not matter, which pays.
 const SMALL: usize = 3;
 /// The fewest objects that are worth a tree.
 const MANY_OBJECTS: usize = 9;
@@ -35,18 +38,22 @@ pub(super) struct ObjectTree {
     /// Their places in the leaf that holds all objects.
     bounded: Vec<u32>,
     unbounded: Vec<u32>,
-    /// For each object of that leaf its face, where it has only one: else `MANY`.
-    faces: Vec<u32>,
+    flat: FlatObjects,
 }
-
-const MANY: u32 = u32::MAX;
 
 impl ObjectTree {
     /// Whether all objects are small; `bounds` by rank.
-    pub(super) fn suits(all: &Content, bounds: &[Aabb]) -> bool {
+    pub(super) fn suits(
+        all: &Content,
+        bounds: &[Aabb],
+        faces: &[Face],
+        surfaces: &[Surface],
+    ) -> bool {
         let few_faces = |object: Active<'_>| {
             let words = [object.expression, object.clip];
             words.into_iter().flat_map(csg::faces).nth(SMALL).is_none()
+                || (object.clip.is_empty()
+                    && FlatObjects::suits(object.expression, faces, surfaces))
         };
         let endless = |object: &Active<'_>| !bounds[object.rank as usize].is_bounded();
         all.object_count() >= MANY_OBJECTS
@@ -61,24 +68,18 @@ impl ObjectTree {
     pub(super) fn build(
         view: &LeafView<'_>,
         bounds: &[Aabb],
+        flat: FlatObjects,
         config: &WideTreeConfig,
     ) -> Result<Self, WideTreeError> {
         let of = |index: &u32| &bounds[view.objects[*index as usize].rank as usize];
         let all = 0..view.objects.len() as u32;
         let (bounded, unbounded): (Vec<u32>, Vec<u32>) = all.partition(|i| of(i).is_bounded());
         let boxes: Vec<Aabb> = bounded.iter().map(|i| grown(of(i))).collect();
-        let only = |object: &LeafObject| {
-            let mut faces = csg::faces(view.expression(object));
-            match (faces.next(), faces.next()) {
-                (Some(face), None) => face.0,
-                _ => MANY,
-            }
-        };
         Ok(Self {
             tree: WideTree::build(&boxes, config)?,
             bounded,
             unbounded,
-            faces: view.objects.iter().map(only).collect(),
+            flat,
         })
     }
 
@@ -89,10 +90,9 @@ impl ObjectTree {
 
     /// Bytes of the lists beside the tree.
     pub(super) fn list_bytes(&self) -> u64 {
-        [&self.bounded, &self.unbounded, &self.faces]
-            .into_iter()
-            .map(|list| size_of_val(list.as_slice()) as u64)
-            .sum()
+        let lists = [&self.bounded, &self.unbounded].into_iter();
+        let bytes: u64 = lists.map(|list| size_of_val(list.as_slice()) as u64).sum();
+        bytes + self.flat.list_bytes()
     }
 
     /// Adds the objects that the line may meet in `span`, by rank.
@@ -118,44 +118,99 @@ impl ObjectTree {
 }
 
 impl Solids {
-    /// Sweeps from change to change, as far as `visit` wants: it returns the parameter beyond which
-    /// nothing matters any more. Meant for those who want the first ones.
+    /// Visits the boundaries that are seen, change by change, as far as `visit` wants: it returns the
+    /// parameter beyond which nothing matters any more. Meant for those who want the first ones.
     pub(crate) fn sweep_forward(
         &self,
         line: &Line,
         limit: f64,
         scratch: &mut Scratch,
         counters: &mut Counters,
-        mut visit: impl FnMut(&Change<'_>) -> f64,
+        mut visit: impl FnMut(Option<Interface>) -> f64,
     ) {
         let (Some(objects), Some(leaf)) = (&self.objects, self.outer) else {
-            return self.sweep_line(line, limit, scratch, counters, visit);
+            return self.sweep_line(line, limit, scratch, counters, |change| {
+                visit(change.interface())
+            });
         };
         scratch.begin(self.surfaces.len());
         let view = self.leaves.get(leaf);
         let mut ahead = Interval::new(line.origin, line.end.min(limit));
-        while let Some(s) = self.next_change(objects, &view, line, ahead, scratch, counters) {
+        while let Some((s, ahead_of)) =
+            self.next_change(objects, &view, line, ahead, scratch, counters)
+        {
             // Every object that holds this point has been asked.
-            let mut hits = std::mem::take(&mut scratch.leaf_hits);
-            hits.objects.sort_unstable_by_key(|object| object.rank);
-            hits.objects.dedup_by_key(|object| object.rank);
-            let limit = self.sweep(
-                line,
-                LeafVisit {
-                    index: None,
-                    view: &view.only(&hits.objects, &mut hits.surfaces, &self.faces),
-                    span: Interval::new(s, s),
-                    limit: f64::INFINITY,
-                    scratch,
-                    counters,
-                },
-                &mut visit,
-            );
-            scratch.leaf_hits = hits;
+            let mut met = std::mem::take(&mut scratch.met);
+            met.retain(|met| met.inside || met.s == s);
+            let limit = match (&met[..], ahead_of) {
+                // In several leaves it has been asked several times.
+                ([one, same @ ..], Ahead::Change(change))
+                    if view.base == 0 && same.iter().all(|m| m.object.rank == one.object.rank) =>
+                {
+                    visit(Some(self.interface_of(one.object.rank, change)))
+                }
+                _ => self.sweep_at(s, line, &view, &met, scratch, counters, &mut visit),
+            };
+            scratch.met = met;
             ahead = Interval::new(s.next_up(), ahead.end.min(limit));
             if ahead.is_empty() {
                 return;
             }
+        }
+    }
+
+    /// Sweeps all objects that have been met at one parameter.
+    #[expect(
+        clippy::too_many_arguments,
+        reason = "one hot function with its working memory"
+    )]
+    #[inline(never)]
+    fn sweep_at(
+        &self,
+        s: f64,
+        line: &Line,
+        view: &LeafView<'_>,
+        met: &[Met],
+        scratch: &mut Scratch,
+        counters: &mut Counters,
+        visit: &mut impl FnMut(Option<Interface>) -> f64,
+    ) -> f64 {
+        let mut hits = std::mem::take(&mut scratch.leaf_hits);
+        hits.objects.clear();
+        hits.objects.extend(met.iter().map(|met| met.object));
+        hits.objects.sort_unstable_by_key(|object| object.rank);
+        hits.objects.dedup_by_key(|object| object.rank);
+        let limit = self.sweep(
+            line,
+            LeafVisit {
+                index: None,
+                view: &view.only(&hits.objects, &mut hits.surfaces, &self.faces),
+                span: Interval::new(s, s),
+                limit: f64::INFINITY,
+                scratch,
+                counters,
+            },
+            &mut |change| visit(change.interface()),
+        );
+        scratch.leaf_hits = hits;
+        limit
+    }
+
+    /// The change of an object where nothing else is.
+    fn interface_of(&self, rank: u32, change: FirstChange) -> Interface {
+        let inside = Region::of(self.object_of(rank));
+        let (from, to) = if change.entering {
+            (Region::OUTSIDE, inside)
+        } else {
+            (inside, Region::OUTSIDE)
+        };
+        Interface {
+            s: change.s,
+            face: change.face,
+            instance: 0,
+            entering: change.entering,
+            from,
+            to,
         }
     }
 
@@ -182,13 +237,13 @@ impl Solids {
         scratch.begin(self.surfaces.len());
         let view = self.leaves.get(leaf);
         let ahead = Interval::new(line.origin, line.end);
-        let departed = self.departed_surface(line).map(|(surface, ..)| surface);
+        let course = self.course(line, ahead.start);
         let mut cost = WalkCost::default();
         let mut ask = |index: u32| {
-            let found = self.first_change(
-                objects, &view, index, line, departed, ahead, scratch, counters,
-            );
-            found.is_some_and(|s| s < line.end)
+            let end = line.end;
+            let (met, _) =
+                self.first_change(objects, &view, index, &course, end, scratch, counters);
+            met.is_some_and(|met| met.s < end)
         };
         changes = objects.unbounded.iter().any(|&index| ask(index))
             || objects.tree.any(&line.ray, ahead, &mut cost, |item| {
@@ -232,8 +287,9 @@ impl Solids {
         limit
     }
 
-    /// The first parameter of `ahead` at which the line enters or leaves any object. Those that were
-    /// asked, among them all that hold the point there, stand in the scratch then.
+    /// The first parameter of `ahead` at which the line enters or leaves any object, and what is
+    /// known of the change. The objects that were asked and are not known to be elsewhere, among them
+    /// all that hold the point there, stand in the scratch then.
     fn next_change(
         &self,
         objects: &ObjectTree,
@@ -242,22 +298,20 @@ impl Solids {
         ahead: Interval,
         scratch: &mut Scratch,
         counters: &mut Counters,
-    ) -> Option<f64> {
-        let departed = self.departed_surface(line).map(|(surface, ..)| surface);
+    ) -> Option<(f64, Ahead)> {
+        let course = self.course(line, ahead.start);
         let mut next = None;
-        scratch.leaf_hits.objects.clear();
+        scratch.met.clear();
         let mut ask = |index: u32, end: f64| {
-            scratch.leaf_hits.objects.push(view.objects[index as usize]);
-            let within = Interval::new(ahead.start, end);
-            let found = self.first_change(
-                objects, view, index, line, departed, within, scratch, counters,
-            );
-            match found {
-                Some(s) if s <= end => {
-                    next = found;
-                    s
-                }
-                _ => end,
+            let (met, known) =
+                self.first_change(objects, view, index, &course, end, scratch, counters);
+            let Some(met) = met else { return end };
+            scratch.met.push(met);
+            if met.s <= end && met.s < f64::INFINITY {
+                next = Some((met.s, known));
+                met.s
+            } else {
+                end
             }
         };
         let mut end = ahead.end;
@@ -275,7 +329,14 @@ impl Solids {
         next
     }
 
-    /// Where the line first enters or leaves one object.
+    /// The line from `start` on.
+    fn course<'a>(&self, line: &'a Line, start: f64) -> Course<'a> {
+        let departed = self.departed_surface(line);
+        let departed = departed.map(|(surface, to_positive, _)| (surface, to_positive));
+        Course::new(line, start, departed)
+    }
+
+    /// Where the line first enters or leaves one object; `None` if it is outside all along.
     #[expect(
         clippy::too_many_arguments,
         reason = "one hot function with its working memory"
@@ -286,40 +347,25 @@ impl Solids {
         objects: &ObjectTree,
         view: &LeafView<'_>,
         index: u32,
-        line: &Line,
-        departed: Option<u32>,
-        within: Interval,
+        course: &Course<'_>,
+        end: f64,
         scratch: &mut Scratch,
         counters: &mut Counters,
-    ) -> Option<f64> {
-        let face: Option<&Face> = self.faces.get(objects.faces[index as usize] as usize);
-        match face.map(|face| face.surface.0) {
-            Some(surface) if Some(surface) != departed => {
-                counters.surface_tests += 1;
-                self.first_crossing(surface, line, within)
-            }
-            _ => {
+    ) -> (Option<Met>, Ahead) {
+        let ahead = (objects.flat).ahead(index, course, end, &self.surfaces, counters);
+        let (inside, s) = match ahead {
+            Ahead::Outside => return (None, ahead),
+            Ahead::Inside => (true, f64::INFINITY),
+            Ahead::Change(change) => (!change.entering, change.s),
+            Ahead::Unknown => {
+                let within = course.until(end);
                 let object = &view.objects[index as usize];
-                self.first_toggle(line, view, object, within, scratch, counters)
+                let (inside, first) =
+                    self.first_toggle(course.line, view, object, within, scratch, counters);
+                (inside, first.unwrap_or(f64::INFINITY))
             }
-        }
-    }
-
-    /// Where the line first changes its side of a surface that it does not depart from.
-    fn first_crossing(&self, surface: u32, line: &Line, within: Interval) -> Option<f64> {
-        let mut first = None;
-        self.surfaces[surface as usize].crossings(&line.ray, |s| {
-            // There is one zero.
-            let s = s + 0.0;
-            if s > line.origin && s >= within.start {
-                match first {
-                    None => first = Some(s),
-                    // Crossed twice at once: nothing changes.
-                    Some(same) if same == s => first = None,
-                    Some(_) => {}
-                }
-            }
-        });
-        first
+        };
+        let object = view.objects[index as usize];
+        (Some(Met { object, inside, s }), ahead)
     }
 }

@@ -13,6 +13,7 @@ use rayon::prelude::*;
 use super::candidates::{Candidate, Expressions, candidates};
 use super::cells::{Cells, Content, Draft, ScratchPool, cost};
 use super::divide::{Plan, check_list};
+use super::flat_object::FlatObjects;
 use super::leaf::LeafWriter;
 use super::object_tree::ObjectTree;
 use super::operand_boxes::OperandBoxes;
@@ -125,7 +126,9 @@ impl Solids {
         let leaves_open = config.method == Method::Auto
             && config.criteria == Criteria::default()
             && list.is_none();
-        let small = leaves_open && meshes.is_empty() && ObjectTree::suits(&root, &object_bounds);
+        let small = leaves_open
+            && meshes.is_empty()
+            && ObjectTree::suits(&root, &object_bounds, &faces, &surfaces);
         let mut leaves = LeafWriter::default();
         let mut cells = None;
         let mut marking = None;
@@ -170,7 +173,14 @@ impl Solids {
         let objects = match outer.filter(|_| small) {
             Some(leaf) => {
                 let view = leaves.get(leaf);
-                Some(ObjectTree::build(&view, &object_bounds, &config.triangles)?)
+                let shell = |rank: u32| ranked[rank as usize].shell;
+                let flat = FlatObjects::new(&view, &object_bounds, shell, &faces, &surfaces);
+                Some(ObjectTree::build(
+                    &view,
+                    &object_bounds,
+                    flat,
+                    &config.triangles,
+                )?)
             }
             None => None,
         };

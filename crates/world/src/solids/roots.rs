@@ -4,6 +4,7 @@
 use std::ops::Range;
 
 use super::Solids;
+use super::flat_object::Met;
 use super::spans::Toggles;
 use super::sweep::Event;
 use super::volumes::LeafHits;
@@ -80,6 +81,8 @@ pub(crate) struct Scratch {
     /// For the triangles of sheets.
     pub(crate) triangles: SearchMemory,
     pub(super) leaf_hits: LeafHits,
+    /// The objects of a tree of boxes that were asked and matter.
+    pub(super) met: Vec<Met>,
     pub(crate) chords: ChordScratch,
     /// Chords that are only counted.
     pub(crate) counted: Vec<Chord>,

@@ -73,7 +73,8 @@ impl Solids {
         }
     }
 
-    /// Where the line first enters or leaves an object in `span`, wherever its boundary counts.
+    /// Whether the line is in an object at the start of `span`, and where it first enters or leaves it
+    /// in `span`, wherever its boundary counts.
     pub(super) fn first_toggle(
         &self,
         line: &Line,
@@ -82,15 +83,15 @@ impl Solids {
         span: Interval,
         scratch: &mut Scratch,
         counters: &mut Counters,
-    ) -> Option<f64> {
+    ) -> (bool, Option<f64>) {
         scratch.toggles.all.clear();
         let stretch = Stretch {
             line,
             words: view.expression(object),
             span,
         };
-        self.truth_along(&stretch, 0, scratch, counters);
-        scratch.toggles.all.first().map(|toggle| toggle.s)
+        let inside = self.truth_along(&stretch, 0, scratch, counters);
+        (inside, scratch.toggles.all.first().map(|toggle| toggle.s))
     }
 
     /// Appends the changes of the term at `at` to the toggles, and returns its truth at the start.

@@ -150,8 +150,10 @@ pub fn shells(
             let size = bounds.diagonal();
             match composite.boundary() {
                 // What is smaller than the error needs no more than its box.
-                Boundary::Triangles(_) if size <= aim => (layer::prisms(&bounds).to_vec(), size),
-                Boundary::Triangles(triangles) => (
+                Boundary::Triangles { .. } if size <= aim => {
+                    (layer::prisms(&bounds).to_vec(), size)
+                }
+                Boundary::Triangles { triangles, .. } => (
                     triangles.iter().copied().map(ShellPatch::flat).collect(),
                     0.0,
                 ),

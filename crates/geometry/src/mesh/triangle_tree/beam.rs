@@ -3,13 +3,16 @@
 use std::ops::Range;
 
 use octray_kernels::beam::GROUP;
+use octray_kernels::triangles::WINDOW;
 use octray_kernels::{BeamTriangles, Candidates, Kernels, RayCandidates};
 use octray_tree::wide_tree::{BEAM, Beam, BeamVisitor, GROUPS, PendingBeam};
 
+use super::TriangleRay;
 use super::divide::Triangles;
 use super::nearest::{NearestTriangle, TriangleQuery};
 use super::packed::PackedTriangles;
-use super::{TriangleHit, TriangleRay};
+use super::search::SearchCost;
+use super::settle::{Settlement, Undecided};
 
 /// What is done with a line of a beam and a triangle that it may cross.
 pub(super) trait Take {
@@ -85,14 +88,14 @@ impl<T: Take> BeamLeaves<'_, T> {
     fn few(
         &mut self,
         kernels: impl Kernels,
-        rows: &[f32],
+        rows: &[f32; WINDOW],
         items: &[u32],
         index: usize,
         mut lines: u32,
     ) -> bool {
         let margin = 2.0 * self.beam.frame().error();
         let mut is_shorter = false;
-        let mut found = Candidates::default();
+        let mut found = Candidates::NONE;
         while lines != 0 {
             let place = lines.trailing_zeros() as usize & (GROUP - 1);
             lines &= lines - 1;
@@ -170,7 +173,40 @@ const WAITING: usize = 4;
 pub(super) struct Known {
     waiting: [[Candidate; WAITING]; BEAM],
     lengths: [u8; BEAM],
-    best: [Option<NearestTriangle>; BEAM],
+}
+
+/// Whether beams have paid lately: where many triangles stand in the space of one, its lines are faster
+/// alone.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Coherence {
+    /// Runs of lines that are still to walk alone, and how many that was last time.
+    alone: u32,
+    last: u32,
+}
+
+/// What a line of a beam may cost, in nodes; four triangles cost about as much as two.
+const WORTH: u64 = 3;
+/// Runs that walk alone before a beam is tried again, at most.
+const LONGEST: u32 = 16;
+
+impl Coherence {
+    /// Whether to try a beam now.
+    pub(super) const fn allows(&mut self) -> bool {
+        let allows = self.alone == 0;
+        self.alone = self.alone.saturating_sub(1);
+        allows
+    }
+
+    /// What a beam of so many lines has cost.
+    pub(super) fn learn(&mut self, cost: &SearchCost, lines: usize) {
+        let is_worth = cost.walk.nodes + cost.walk.items / 2 <= WORTH * lines as u64;
+        self.last = if is_worth {
+            0
+        } else {
+            (2 * self.last).clamp(1, LONGEST)
+        };
+        self.alone = self.last;
+    }
 }
 
 /// Working memory of beams, kept from one to the next.
@@ -180,6 +216,9 @@ pub(super) struct BeamMemory {
     pub(super) stack: Vec<PendingBeam>,
     pub(super) triangles: BeamTriangles,
     pub(super) known: Known,
+    pub(super) settlement: Settlement,
+    /// Of lines that walk by themselves.
+    pub(super) costs: [SearchCost; BEAM],
 }
 
 impl Default for BeamMemory {
@@ -191,8 +230,9 @@ impl Default for BeamMemory {
             known: Known {
                 waiting: [[Candidate::default(); WAITING]; BEAM],
                 lengths: [0; BEAM],
-                best: [None; BEAM],
             },
+            settlement: Settlement::default(),
+            costs: [SearchCost::default(); BEAM],
         }
     }
 }
@@ -202,6 +242,7 @@ pub(super) struct BeamNearest<'a> {
     exact: Triangles<'a>,
     queries: &'a [TriangleQuery],
     known: &'a mut Known,
+    best: &'a mut [Option<NearestTriangle>; BEAM],
 }
 
 impl<'a> BeamNearest<'a> {
@@ -209,21 +250,15 @@ impl<'a> BeamNearest<'a> {
         exact: Triangles<'a>,
         queries: &'a [TriangleQuery],
         known: &'a mut Known,
+        best: &'a mut [Option<NearestTriangle>; BEAM],
     ) -> Self {
         known.lengths.fill(0);
-        known.best.fill(None);
         Self {
             exact,
             queries,
             known,
+            best,
         }
-    }
-
-    /// The answer of a line, once the walk is over.
-    #[inline]
-    pub(super) fn finish(&mut self, beam: &Beam, line: usize) -> Option<NearestTriangle> {
-        self.decide(beam, line);
-        self.known.best[line]
     }
 
     /// Tests what waits and has not been overtaken; returns the new end, infinity if it is as before.
@@ -250,14 +285,32 @@ impl<'a> BeamNearest<'a> {
                 entering: hit.entering,
             };
             if query.counts(hit.t)
-                && found.is_before(self.known.best[line].as_ref())
+                && found.is_before(self.best[line].as_ref())
                 && !query.leaves(candidate.triangle, &self.exact)
             {
-                self.known.best[line] = Some(found);
+                self.best[line] = Some(found);
             }
         }
         self.known.lengths[line] = 0;
-        self.known.best[line].map_or(f32::INFINITY, |best| beam.depth(line, best.t))
+        self.best[line].map_or(f32::INFINITY, |best| beam.depth(line, best.t))
+    }
+}
+
+impl Known {
+    /// Which exact tests are left, once the walk is over.
+    #[inline(always)]
+    pub(super) fn finish(&self, beam: &Beam, lines: usize, undecided: &mut Vec<Undecided>) {
+        for line in 0..lines.min(BEAM) {
+            let end = beam.groups[line / GROUP].ends[line % GROUP];
+            for candidate in &self.waiting[line][..self.lengths[line] as usize % (WAITING + 1)] {
+                if candidate.nearest <= end {
+                    undecided.push(Undecided {
+                        query: line as u32,
+                        triangle: candidate.triangle,
+                    });
+                }
+            }
+        }
     }
 }
 
@@ -289,44 +342,12 @@ impl Take for BeamNearest<'_> {
         self.known.waiting[line][*length as usize & (WAITING - 1)] = candidate;
         *length += 1;
         if candidate.is_certain && candidate.nearest > beam.frame().error() {
-            if query.departed.is_none() {
-                end = end.min(candidate.farthest);
+            if query.leaves(candidate.triangle, &self.exact) {
+                *length -= 1;
             } else {
-                end = end.min(self.decide(beam, line));
+                end = end.min(candidate.farthest);
             }
         }
         end
-    }
-}
-
-/// Asks for each line whether any triangle counts.
-pub(super) struct BeamAny<'a, F> {
-    pub(super) exact: Triangles<'a>,
-    pub(super) queries: &'a [TriangleQuery],
-    pub(super) met: [bool; BEAM],
-    /// Of the line's index, the triangle and the crossing.
-    pub(super) counts: F,
-}
-
-impl<F: FnMut(usize, u32, &TriangleHit) -> bool> Take for BeamAny<'_, F> {
-    #[inline]
-    fn take(&mut self, _beam: &Beam, line: usize, candidate: Candidate) -> f32 {
-        let query = &self.queries[line];
-        let triangle = candidate.triangle;
-        if query.departed == Some(triangle) {
-            return f32::INFINITY;
-        }
-        let test = TriangleRay::new(&query.ray);
-        let Some(hit) = test.intersect(self.exact.corners(triangle)) else {
-            return f32::INFINITY;
-        };
-        let counts = query.counts(hit.t)
-            && !query.leaves(triangle, &self.exact)
-            && (self.counts)(line, triangle, &hit);
-        if counts {
-            self.met[line] = true;
-            return f32::NEG_INFINITY;
-        }
-        f32::INFINITY
     }
 }

@@ -1,5 +1,6 @@
 //! Triangles where they stand, and those that a line crosses.
 
+mod any;
 mod beam;
 mod cells;
 mod divide;
@@ -8,6 +9,7 @@ mod nearest;
 mod occupied;
 mod packed;
 mod search;
+mod settle;
 mod volumes;
 mod wide;
 
@@ -113,6 +115,15 @@ impl TriangleTree {
             wide.set_lanes(lanes);
         }
         self
+    }
+
+    /// How kernels run.
+    #[must_use]
+    pub const fn lanes(&self) -> Lanes {
+        match &self.index {
+            Index::Wide(wide) => wide.tree.lanes(),
+            _ => Lanes::Scalar,
+        }
     }
 
     /// How many triangles there are.
@@ -327,13 +338,13 @@ impl TriangleTree {
     }
 
     /// Gives `answer` whether `counts` is true of any triangle on each line, with the line's index and
-    /// what the search cost, each index once. `counts` gets the line's index, the triangle, and where
-    /// the line crosses it; it is asked only about what the query leaves open.
+    /// what the search cost, each index once. `counts` gets the line's index, and where it crosses which
+    /// triangle; it is asked only about what the query leaves open.
     pub fn any_of(
         &self,
         queries: &[TriangleQuery],
         memory: &mut SearchMemory,
-        mut counts: impl FnMut(usize, u32, &TriangleHit) -> bool,
+        mut counts: impl FnMut(usize, &NearestTriangle) -> bool,
         mut answer: impl FnMut(usize, bool, SearchCost),
     ) {
         if let Index::Wide(wide) = &self.index {
@@ -348,9 +359,14 @@ impl TriangleTree {
                 memory,
                 &mut cost,
                 |triangle, hit| {
+                    let found = NearestTriangle {
+                        t: hit.t,
+                        triangle,
+                        entering: hit.entering,
+                    };
                     query.counts(hit.t)
                         && !query.leaves(triangle, &self.exact())
-                        && counts(index, triangle, hit)
+                        && counts(index, &found)
                 },
             );
             answer(index, met, cost);

@@ -11,6 +11,7 @@ use octray_math::{Interval, Ray};
 use octray_tree::{LeafVisitor, LocalLine};
 
 use super::divide::Triangles;
+use super::settle::Undecided;
 use super::wide::Leaves;
 use super::{TriangleRay, are_coplanar};
 
@@ -109,10 +110,21 @@ impl<'a> Nearest<'a> {
         self.leaves.tested
     }
 
-    /// The exact tests that are left.
-    #[inline]
-    pub(super) fn finish(mut self) -> Option<NearestTriangle> {
-        self.decide();
+    /// What is known, and which exact tests are left.
+    #[inline(always)]
+    pub(super) fn finish(
+        &self,
+        index: usize,
+        undecided: &mut Vec<Undecided>,
+    ) -> Option<NearestTriangle> {
+        for waiting in &self.waiting[..self.length] {
+            if waiting.nearest <= self.s_max {
+                undecided.push(Undecided {
+                    query: index as u32,
+                    triangle: waiting.triangle,
+                });
+            }
+        }
         self.best
     }
 
@@ -157,7 +169,7 @@ impl LeafVisitor for Nearest<'_> {
         s_max: f32,
     ) -> ControlFlow<(), f32> {
         self.s_max = s_max;
-        let mut found = Candidates::default();
+        let mut found = Candidates::NONE;
         let items = self.leaves.test(kernels, places, s_max, &mut found);
         while found.possible != 0 {
             let lane = found.possible.trailing_zeros() as usize & 7;
@@ -172,10 +184,10 @@ impl LeafVisitor for Nearest<'_> {
             self.waiting[self.length & (WAITING - 1)] = Waiting { nearest, triangle };
             self.length += 1;
             if found.certain >> lane & 1 != 0 && nearest > self.s_after {
-                if self.query.departed.is_none() {
-                    self.s_max = self.s_max.min(found.farthest[lane]);
+                if self.query.leaves(triangle, &self.exact) {
+                    self.length -= 1;
                 } else {
-                    self.decide();
+                    self.s_max = self.s_max.min(found.farthest[lane]);
                 }
             }
         }

@@ -6,7 +6,7 @@
 
 use std::ops::Range;
 
-use octray_kernels::triangles::{FLOATS, PADDING};
+use octray_kernels::triangles::{FLOATS, PADDING, WINDOW};
 use octray_math::DVec3;
 use octray_tree::WideTree;
 
@@ -32,10 +32,11 @@ impl PackedTriangles {
         Self(rows)
     }
 
-    /// The floats of a leaf and [`PADDING`] more.
+    /// The floats of a leaf and what follows.
     #[inline(always)]
-    pub(super) fn leaf(&self, places: &Range<usize>) -> &[f32] {
-        &self.0[FLOATS * places.start..FLOATS * places.end + PADDING]
+    pub(super) fn leaf(&self, places: &Range<usize>) -> &[f32; WINDOW] {
+        let (windows, _) = self.0[FLOATS * places.start..].as_chunks();
+        &windows[0]
     }
 
     pub(super) fn bytes(&self) -> u64 {

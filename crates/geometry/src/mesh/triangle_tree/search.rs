@@ -5,7 +5,7 @@ use octray_tree::{
     Criteria, Division, LvsiTable, Pending, WalkCost, WalkMemory, WideTree, WideTreeConfig,
 };
 
-use super::beam::BeamMemory;
+use super::beam::{BeamMemory, Coherence};
 use crate::Membership;
 
 /// How the triangles that a line crosses are found. The answers are the same bits.
@@ -62,12 +62,19 @@ pub struct SearchMemory {
     stack: Vec<Pending>,
     /// Taken out while a beam is searched.
     pub(super) beams: Option<Box<BeamMemory>>,
+    pub(super) coherence: Coherence,
 }
 
 impl SearchMemory {
     /// The rays to come are others than those that entered together last.
     pub const fn leave(&mut self) {
         self.walk.leave();
+    }
+
+    /// A slice of lines begins: what beams have cost in others does not count, so that costs depend on
+    /// nothing but the slice.
+    pub fn begin_slice(&mut self) {
+        self.coherence = Coherence::default();
     }
 
     /// A stack for walks of this tree.

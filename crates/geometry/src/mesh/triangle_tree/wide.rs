@@ -9,11 +9,13 @@ use octray_math::{Interval, Ray};
 use octray_tree::wide_tree::{BEAM, Beam, BeamLine, PendingBeam};
 use octray_tree::{LeafVisitor, LocalLine, WideTree, WideTreeConfig, WideTreeError};
 
-use super::beam::{BeamAny, BeamLeaves, BeamMemory, BeamNearest, Take};
+use super::any::{BeamAny, FirstMet};
+use super::beam::{BeamLeaves, BeamMemory, BeamNearest, Take};
 use super::divide::Triangles;
 use super::nearest::{Nearest, NearestTriangle, TriangleQuery};
 use super::packed::PackedTriangles;
 use super::search::{SearchCost, SearchMemory};
+use super::settle::Settlement;
 use super::{TriangleHit, TriangleRay};
 
 /// The tree with its packed triangles.
@@ -50,6 +52,7 @@ pub(super) struct Leaves<'a> {
 }
 
 impl<'a> Leaves<'a> {
+    #[inline(always)]
     fn new(wide: &'a WideTriangles, local: &LocalLine, s_min: f32) -> Self {
         Self {
             items: wide.tree.items(),
@@ -102,7 +105,7 @@ impl<F: FnMut(u32, &TriangleHit, f64) -> ControlFlow<(), f64>> LeafVisitor for C
         places: Range<usize>,
         mut s_max: f32,
     ) -> ControlFlow<(), f32> {
-        let mut found = Candidates::default();
+        let mut found = Candidates::NONE;
         let items = self.leaves.test(kernels, places, s_max, &mut found);
         while found.possible != 0 {
             let lane = found.possible.trailing_zeros() as usize;
@@ -220,26 +223,34 @@ impl WideTriangles {
         let mut beams = memory.beams.take().unwrap_or_default();
         let mut first = 0;
         for part in queries.chunks(BEAM) {
-            if self.beam(part, Meeting::Start, &mut beams.beam) {
-                let BeamMemory {
-                    beam,
-                    stack,
-                    triangles,
-                    known,
-                } = &mut *beams;
-                let take = BeamNearest::new(exact, part, known);
+            let BeamMemory {
+                beam,
+                stack,
+                triangles,
+                known,
+                settlement,
+                costs,
+            } = &mut *beams;
+            settlement.clear(part.len());
+            let costs = &mut costs[..part.len()];
+            if memory.coherence.allows() && self.beam(part, Meeting::Start, beam) {
+                let take = BeamNearest::new(exact, part, known, &mut settlement.best);
                 let mut visitor = self.beam_leaves(beam, triangles, take);
                 let cost = self.walk_beam(kernels, stack, &mut visitor);
-                for index in 0..part.len() {
-                    let found = visitor.take.finish(visitor.beam, index);
-                    answer(first + index, found, cost.share(index, part.len()));
+                memory.coherence.learn(&cost, part.len());
+                known.finish(beam, part.len(), &mut settlement.undecided);
+                for (index, own) in costs.iter_mut().enumerate() {
+                    *own = cost.share(index, part.len());
                 }
             } else {
-                for (index, query) in part.iter().enumerate() {
-                    let mut cost = SearchCost::default();
-                    let found = self.nearest_one(kernels, exact, query, memory, &mut cost);
-                    answer(first + index, found, cost);
+                for (index, (query, cost)) in part.iter().zip(&mut *costs).enumerate() {
+                    *cost = SearchCost::default();
+                    self.nearest_one(kernels, exact, (index, query), memory, cost, settlement);
                 }
+            }
+            settlement.settle(kernels, exact, part);
+            for (index, (&found, &cost)) in settlement.best.iter().zip(&*costs).enumerate() {
+                answer(first + index, found, cost);
             }
             first += part.len();
         }
@@ -252,7 +263,7 @@ impl WideTriangles {
         exact: Triangles<'_>,
         queries: &[TriangleQuery],
         memory: &mut SearchMemory,
-        counts: impl FnMut(usize, u32, &TriangleHit) -> bool,
+        counts: impl FnMut(usize, &NearestTriangle) -> bool,
         answer: impl FnMut(usize, bool, SearchCost),
     ) {
         match self.tree.lanes() {
@@ -269,7 +280,7 @@ impl WideTriangles {
         exact: Triangles<'_>,
         queries: &[TriangleQuery],
         memory: &mut SearchMemory,
-        mut counts: impl FnMut(usize, u32, &TriangleHit) -> bool,
+        mut counts: impl FnMut(usize, &NearestTriangle) -> bool,
         mut answer: impl FnMut(usize, bool, SearchCost),
     ) {
         let mut beams = memory.beams.take().unwrap_or_default();
@@ -279,31 +290,46 @@ impl WideTriangles {
                 beam,
                 stack,
                 triangles,
+                settlement,
+                costs,
                 ..
             } = &mut *beams;
-            if self.beam(part, Meeting::End, beam) || self.beam(part, Meeting::Start, beam) {
+            settlement.clear(part.len());
+            let costs = &mut costs[..part.len()];
+            if memory.coherence.allows()
+                && (self.beam(part, Meeting::End, beam) || self.beam(part, Meeting::Start, beam))
+            {
                 let take = BeamAny {
                     exact,
                     queries: part,
-                    met: [false; BEAM],
-                    counts: |index, triangle, hit: &TriangleHit| {
-                        counts(first + index, triangle, hit)
-                    },
+                    undecided: &mut settlement.undecided,
+                    is_early: &mut settlement.is_early,
                 };
                 let mut visitor = self.beam_leaves(beam, triangles, take);
                 let cost = self.walk_beam(kernels, stack, &mut visitor);
-                let met = visitor.take.met;
-                for (index, &met) in met.iter().enumerate().take(part.len()) {
-                    answer(first + index, met, cost.share(index, part.len()));
+                memory.coherence.learn(&cost, part.len());
+                for (index, own) in costs.iter_mut().enumerate() {
+                    *own = cost.share(index, part.len());
                 }
             } else {
-                for (index, query) in part.iter().enumerate() {
-                    let mut cost = SearchCost::default();
-                    let met = self.any_one(kernels, exact, query, memory, &mut cost, |t, hit| {
-                        counts(first + index, t, hit)
-                    });
-                    answer(first + index, met, cost);
+                for (index, (query, cost)) in part.iter().zip(&mut *costs).enumerate() {
+                    *cost = SearchCost::default();
+                    self.first_met(kernels, exact, (index, query), memory, cost, settlement);
                 }
+            }
+            let mut met = settlement.met;
+            settlement.each(kernels, exact, part, |index, found| {
+                met[index] = met[index]
+                    || (!part[index].leaves(found.triangle, &exact)
+                        && counts(first + index, &found));
+            });
+            for (index, (query, cost)) in part.iter().zip(&mut *costs).enumerate() {
+                let is_met = met[index]
+                    || (settlement.is_early[index]
+                        && self.any_one(kernels, exact, query, memory, cost, |found| {
+                            counts(first + index, found)
+                        }));
+                answer(first + index, is_met, *cost);
             }
             first += part.len();
         }
@@ -359,7 +385,8 @@ impl WideTriangles {
         cost
     }
 
-    #[inline(always)]
+    /// Walks alone and decides every triangle at once.
+    #[inline(never)]
     fn any_one(
         &self,
         kernels: impl Kernels,
@@ -367,7 +394,7 @@ impl WideTriangles {
         query: &TriangleQuery,
         memory: &mut SearchMemory,
         cost: &mut SearchCost,
-        mut counts: impl FnMut(u32, &TriangleHit) -> bool,
+        mut counts: impl FnMut(&NearestTriangle) -> bool,
     ) -> bool {
         if query.span.is_empty() {
             return false;
@@ -383,7 +410,12 @@ impl WideTriangles {
             local: &local,
             span: query.span,
             visit: |triangle, hit: &TriangleHit, end| {
-                if query.counts(hit.t) && !query.leaves(triangle, &exact) && counts(triangle, hit) {
+                let found = NearestTriangle {
+                    t: hit.t,
+                    triangle,
+                    entering: hit.entering,
+                };
+                if query.counts(hit.t) && !query.leaves(triangle, &exact) && counts(&found) {
                     ControlFlow::Break(())
                 } else {
                     ControlFlow::Continue(end)
@@ -398,19 +430,52 @@ impl WideTriangles {
         flow.is_break()
     }
 
+    /// Walks alone until something is met; exact tests are left to the settlement.
+    #[inline(always)]
+    fn first_met(
+        &self,
+        kernels: impl Kernels,
+        exact: Triangles<'_>,
+        (index, query): (usize, &TriangleQuery),
+        memory: &mut SearchMemory,
+        cost: &mut SearchCost,
+        settlement: &mut Settlement,
+    ) {
+        if query.span.is_empty() {
+            return;
+        }
+        let Some(local) = self.tree.line(&query.ray) else {
+            return;
+        };
+        let reach = [local.lower(query.span.start), local.upper(query.span.end)];
+        let leaves = Leaves::new(self, &local, reach[0]);
+        let undecided = &mut settlement.undecided;
+        let mut visitor = FirstMet::new(leaves, exact, (index, query), &local, undecided);
+        let (walk, stack) = (&mut cost.walk, memory.stack(&self.tree));
+        let flow = self
+            .tree
+            .walk(kernels, &local, reach, stack, walk, &mut visitor);
+        walk.items += visitor.tested();
+        settlement.is_early[index % BEAM] = flow.is_break();
+    }
+
+    /// Walks alone; exact tests are left to the settlement.
     #[inline(always)]
     fn nearest_one(
         &self,
         kernels: impl Kernels,
         exact: Triangles<'_>,
-        query: &TriangleQuery,
+        (index, query): (usize, &TriangleQuery),
         memory: &mut SearchMemory,
         cost: &mut SearchCost,
-    ) -> Option<NearestTriangle> {
+        settlement: &mut Settlement,
+    ) {
         if query.span.is_empty() {
-            return None;
+            return;
         }
-        let local = self.tree.line(&query.ray)?;
+        let Some(local) = self.tree.line(&query.ray) else {
+            return;
+        };
         let reach = [local.lower(query.span.start), local.upper(query.span.end)];
         let leaves = Leaves::new(self, &local, reach[0]);
         let mut visitor = Nearest::new(leaves, exact, query, &local);
@@ -420,6 +485,6 @@ impl WideTriangles {
             .tree
             .walk(kernels, &local, reach, stack, walk, &mut visitor);
         walk.items += visitor.tested();
-        visitor.finish()
+        settlement.best[index % BEAM] = visitor.finish(index, &mut settlement.undecided);
     }
 }
