@@ -23,7 +23,7 @@ def test_the_python_examples_run_in_order(tmp_path: Path, monkeypatch: pytest.Mo
     names: dict[str, object] = {}
     printed = io.StringIO()
     examples = blocks(README, "python")
-    assert len(examples) == 3
+    assert len(examples) == 4
     with contextlib.redirect_stdout(printed):
         for example in examples:
             exec(compile(example, "README.md", "exec"), names)  # noqa: S102 - our own text
@@ -34,7 +34,7 @@ def test_the_python_examples_run_in_order(tmp_path: Path, monkeypatch: pytest.Mo
         for example in examples
         for match in re.finditer(r"print\(.*# (\[[^\]]*\])", example)
     ]
-    assert len(claims) == 3
+    assert len(claims) == 4
     for line, claim in zip(lines, claims, strict=False):
         assert line.strip("[]").split() == claim.strip("[]").split()
 
