@@ -12,6 +12,7 @@ mod object_tree;
 mod operand_boxes;
 mod operand_cells;
 mod prepare;
+mod region;
 mod roots;
 mod spans;
 mod sweep;

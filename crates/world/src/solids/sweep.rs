@@ -264,7 +264,7 @@ impl Solids {
 
     /// Puts every surface of the leaf on its side at `start`, and collects the crossings from there
     /// to `end` if one is given.
-    fn place(
+    pub(super) fn place(
         &self,
         view: &LeafView<'_>,
         line: &Line,
@@ -314,7 +314,12 @@ impl Solids {
         negative[face.surface.0 as usize] != face.inside_is_positive
     }
 
-    fn memberships(&self, view: &LeafView<'_>, negative: &[bool], inside: &mut Vec<bool>) {
+    pub(super) fn memberships(
+        &self,
+        view: &LeafView<'_>,
+        negative: &[bool],
+        inside: &mut Vec<bool>,
+    ) {
         inside.clear();
         let objects = view.objects.iter();
         inside.extend(objects.map(|object| self.is_inside(view, object, negative)));
@@ -335,58 +340,6 @@ impl Solids {
         }
         naming.sort_unstable();
         naming.dedup();
-    }
-
-    /// The region, given which of the leaf's objects one is in.
-    fn region(&self, view: &LeafView<'_>, inside: &[bool]) -> Region {
-        let solid = |(object, inside): (&LeafObject, &bool)| {
-            (*inside && !self.ranked[object.rank as usize].shell).then_some(object.rank + 1)
-        };
-        let first = view.objects.iter().zip(inside).find_map(solid);
-        let state = match (first, view.base) {
-            (None, base) => base,
-            (Some(rank), 0) => rank,
-            (Some(rank), base) => rank.min(base),
-        };
-        self.region_of_state(state)
-    }
-
-    pub(super) fn region_in(
-        &self,
-        line: &Line,
-        view: &LeafView<'_>,
-        s: f64,
-        scratch: &mut Scratch,
-        counters: &mut Counters,
-    ) -> Region {
-        self.place(view, line, s, scratch, counters, None);
-        let Scratch {
-            negative, inside, ..
-        } = scratch;
-        self.memberships(view, negative, inside);
-        self.region(view, inside)
-    }
-
-    /// The ranks of the leaf's solids that hold the point at `s`, increasing.
-    pub(super) fn solids_in(
-        &self,
-        line: &Line,
-        view: &LeafView<'_>,
-        s: f64,
-        ranks: &mut Vec<u32>,
-        scratch: &mut Scratch,
-        counters: &mut Counters,
-    ) {
-        self.place(view, line, s, scratch, counters, None);
-        let Scratch {
-            negative, inside, ..
-        } = scratch;
-        self.memberships(view, negative, inside);
-        let held = view.objects.iter().zip(inside.iter()).filter(|(_, i)| **i);
-        ranks.extend(held.map(|(object, _)| object.rank));
-        ranks.extend(view.base.checked_sub(1));
-        ranks.retain(|&rank| !self.ranked[rank as usize].shell);
-        ranks.sort_unstable();
     }
 
     /// A face of a mesh operand becomes that of the triangle which was crossed.
