@@ -107,7 +107,7 @@ def test_memory_is_told_by_part_and_the_table_by_what_it_holds() -> None:
     mesh.add_mesh((corners, triangles))
     memory, wide = mesh.stats()["memory"], mesh.stats()["trees"]["wide"]
     assert memory["triangles"] == 6 * 24 + 6 * 12
-    # Nine floats for each reference to a triangle; whoever looks at one sees eight, and eight floats.
+    # Nine floats for each reference to a triangle. A look at one sees eight, and eight floats.
     assert memory["wide_trees"] == wide["bytes"] + 4 * (9 * (wide["references"] + 7) + 8)
 
 

@@ -35,6 +35,8 @@ __all__ = [
     "SceneError",
     "Solid",
     "SpotLight",
+    "TileRenderer",
+    "TiledPicture",
     "__version__",
     "box",
     "check_request",
